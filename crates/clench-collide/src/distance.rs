@@ -132,7 +132,7 @@ fn find<S: Scalar>(
             if !contacts.as_slice().is_empty() {
                 break;
             }
-            reach *= S::new(4.0);
+            reach *= S::new(SEARCH_GROWTH);
         }
         reach = limit;
     }
@@ -156,4 +156,7 @@ fn find<S: Scalar>(
 }
 
 /// The initial search radius over a height field, as a fraction of the distance to its furthest point.
-const MIN_SEARCH_SHARE: f64 = 1e-3;
+pub(crate) const MIN_SEARCH_SHARE: f64 = 1e-3;
+
+/// The factor by which the search radius grows.
+pub(crate) const SEARCH_GROWTH: f64 = 4.0;

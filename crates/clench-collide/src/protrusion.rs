@@ -27,7 +27,7 @@ pub struct Ascent {
 }
 
 /// The angle of a climb's first steps, rad. Each step that decreases the value halves it.
-const FIRST_STEP: f64 = 0.5;
+pub(crate) const FIRST_STEP: f64 = 0.5;
 /// The minimum length of a vector that has a direction.
 const LEAST: f64 = 1e-15;
 /// The square of `LEAST`.

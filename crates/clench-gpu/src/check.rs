@@ -2,9 +2,8 @@
 
 use crate::error::{GpuError, Refusal};
 use crate::methods::points_of_pair;
-use crate::tables::is_read;
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{Model, Sensor};
+use clench_rigid::model::Model;
 use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
 use clench_solver::ConstraintSolver;
@@ -40,12 +39,6 @@ rules! {
         (coulomb && cg).then(|| "option contact_model".to_owned())
     };
     "sleep is not supported yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
-    "a sensor of this kind is not supported yet, so it cannot have a delay": |s| {
-        let late = |(_, sensor): &(usize, &Sensor)| sensor.history.is_some();
-        let mut late = s.model.sensors.iter().enumerate().filter(late);
-        let (i, sensor) = late.find(|(_, sensor)| !is_read(s.model, sensor))?;
-        Some(named(&format!("{} sensor", sensor.kind.name()), &sensor.name, i))
-    };
     "contacts between these two kinds of shape are not supported yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;

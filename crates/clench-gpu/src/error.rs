@@ -79,16 +79,6 @@ pub enum GpuError {
     /// The device does not support the model yet: the first element of each kind.
     #[error("this model cannot be stepped on a graphics device yet: {}", joined(.0))]
     Unsupported(Vec<Refusal>),
-    /// The device does not support a sensor yet.
-    #[error("{device} cannot read {kind} sensor \"{name}\" yet: sensordata cannot be recorded")]
-    Unread {
-        /// The device's name.
-        device: String,
-        /// The sensor's kind.
-        kind: &'static str,
-        /// The sensor's name.
-        name: String,
-    },
     /// More dofs than the solver can factor a Hessian for.
     #[error(
         "Newton's method on a graphics device is for up to {max} dofs, but the model has {nv}: the solver CG has no such limit"

@@ -30,6 +30,8 @@ pub(crate) enum Workers {
     NarrowPhase,
     /// A thread for each ray; a workgroup holds those of several environments. Beyond [`GRID`], threads trace several.
     Rays,
+    /// The same for each vertex of a skin.
+    Taxels,
     /// One workgroup.
     Workgroup,
 }
@@ -39,7 +41,11 @@ impl Workers {
     /// otherwise four for each row of a tile of H (half as many took 10 % longer on a GPU).
     const fn threads(self) -> u32 {
         match self {
-            Workers::Thread | Workers::Team | Workers::NarrowPhase | Workers::Rays => 32,
+            Workers::Thread
+            | Workers::Team
+            | Workers::NarrowPhase
+            | Workers::Rays
+            | Workers::Taxels => 32,
             Workers::Workgroup => 64,
         }
     }
@@ -114,8 +120,10 @@ kernels! {
     BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "polynomial", "tendon_forces", "wrap", "tendon_acceleration", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
     /// Traces the rays of sensors, on request.
     RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
-    /// Reads sensors, on request.
-    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "contact_adhesion", "wrench", "contact_sensor", "distance_sensor", "clock", "sample_times", "history", "sensor_delay", "optics", "sensors";
+    /// Reads skins, on request.
+    SKINS = "skins", Taxels: "chains", "shape_data", "skins";
+    /// Reads other sensors, on request.
+    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "contact_adhesion", "wrench", "contact_sensor", "distance_sensor", "shape_data", "enclosed", "clock", "sample_times", "history", "sensor_delay", "optics", "sensors";
     /// Checks that the results of a forward pass outside a step are within limits.
     CHECK_FORWARD = "check_forward", Team: "team", "check_results", "check_forward";
     /// Advances the state by semi-implicit Euler; also by `discrete`, whose acceleration is that of the step.
@@ -142,6 +150,8 @@ pub(crate) struct Memory<'a> {
     pub threads: usize,
     /// The rays of the sensors of each environment.
     pub rays: usize,
+    /// The vertices of their skins.
+    pub taxels: usize,
     pub rows: &'a Fields,
     pub reports: &'a Fields,
     pub solver: SolverMemory,
@@ -205,6 +215,8 @@ pub(crate) struct Preface {
     threads: usize,
     /// The rays of its sensors.
     pub rays: usize,
+    /// The vertices of their skins.
+    pub taxels: usize,
 }
 
 /// Builds the preface of a model's kernels.
@@ -265,6 +277,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
         layout,
         threads: memory.threads,
         rays: memory.rays,
+        taxels: memory.taxels,
     }
 }
 
@@ -302,6 +315,7 @@ impl Kernel {
             Workers::Thread | Workers::Team => [of_threads, 1, 1],
             Workers::NarrowPhase => [of_threads, preface.threads as u32, 1],
             Workers::Rays => [of_threads, (preface.rays as u32).min(GRID), 1],
+            Workers::Taxels => [of_threads, (preface.taxels as u32).min(GRID), 1],
             Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
         }
     }
@@ -345,6 +359,8 @@ mod tests {
         let (mut tables, capacity) = Tables::new::<f64>(&model, &settings, &[], kernels);
         tables.shapes(&model, &[]);
         tables.ray_shapes(&model);
+        tables.solid_shapes(&model);
+        tables.skins(&model);
         let state = fields::state_fields(&model, capacity);
         tables.initial_state(&model, &state);
         let memory = Memory {
@@ -353,6 +369,7 @@ mod tests {
             thread: &fields::thread_fields(&model, capacity),
             threads: 1,
             rays: 0,
+            taxels: 0,
             rows: &fields::row_fields(&model, capacity),
             reports: &fields::report_fields(&model, capacity),
             solver: SolverMemory::new::<f64>(0, ConstraintSolver::Newton, 1 << 15, kernels.general),

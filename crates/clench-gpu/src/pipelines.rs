@@ -24,7 +24,7 @@ pub(crate) struct Pipelines {
     cameras: Option<Pipeline>,
     /// Accelerations of bodies and forces between them, once requested.
     body_forces: Option<Pipeline>,
-    /// Rays of sensors, if any, and sensors, once requested.
+    /// Rays and skins of sensors, if any, and sensors, once requested.
     pub sensors: Vec<Pipeline>,
     pub restart: Pipeline,
     /// The forward pass.
@@ -166,6 +166,9 @@ impl Pipelines {
         if sensors && self.sensors.is_empty() {
             if self.preface.rays > 0 {
                 self.sensors.push(compile(&kernels::RAYS)?);
+            }
+            if self.preface.taxels > 0 {
+                self.sensors.push(compile(&kernels::SKINS)?);
             }
             self.sensors.push(compile(&kernels::SENSORS)?);
         }

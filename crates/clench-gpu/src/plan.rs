@@ -6,7 +6,7 @@ use crate::kernel_options::KernelOptions;
 use crate::kernels::{Memory, Preface, preface};
 use crate::precision::GpuReal;
 use crate::solver_memory::SolverMemory;
-use crate::tables::{Capacity, Tables, ray_count};
+use crate::tables::{Capacity, Tables, ray_count, taxel_count};
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::Model;
 use clench_rigid::settings::StepSettings;
@@ -39,6 +39,8 @@ impl<S: GpuReal> Plan<S> {
         let base = Base::new(&tables, pairs, kernels);
         tables.shapes(model, &base.candidates);
         tables.ray_shapes(model);
+        tables.solid_shapes(model);
+        tables.skins(model);
         let state = fields::state_fields(model, capacity);
         let work = fields::work_fields(model, capacity);
         let thread = fields::thread_fields(model, capacity);
@@ -51,6 +53,7 @@ impl<S: GpuReal> Plan<S> {
             thread: &thread,
             threads: capacity.threads,
             rays: ray_count(model),
+            taxels: taxel_count(model),
             rows: &rows,
             reports: &reports,
             solver,

@@ -353,8 +353,13 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
             put(out, seen.x);
             put(out + 1u, seen.y);
         }
-        // The ray kernel has already written these.
-        case OF_RAYS: {
+        case OF_ENCLOSED: {
+            if (ANY_ENCLOSED) {
+                put(out, protrusion(e, words[s + SENSOR_REFERENCE]));
+            }
+        }
+        // The kernels of rays and skins have already written these.
+        case OF_ELSEWHERE: {
         }
         case OF_NOTHING: {
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {

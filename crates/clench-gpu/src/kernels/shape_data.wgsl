@@ -19,6 +19,8 @@ struct TerrainGrid {
     step: vec2f,
     elevation: f32,
     base: f32,
+    // The radius of a ball about the origin that contains it.
+    radius: f32,
 }
 
 var<private> grid: TerrainGrid;
@@ -32,6 +34,7 @@ fn begin_grid(offset: u32) {
     grid.step = vec2f(numbers[sizes + FIELD_NUMBERS_STEP], numbers[sizes + FIELD_NUMBERS_STEP + 1u]);
     grid.elevation = numbers[sizes + FIELD_NUMBERS_ELEVATION];
     grid.base = numbers[sizes + FIELD_NUMBERS_BASE];
+    grid.radius = numbers[sizes + FIELD_NUMBERS_RADIUS];
     grid.heights = sizes + FIELD_NUMBERS_SIZE;
 }
 

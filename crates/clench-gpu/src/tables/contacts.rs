@@ -23,6 +23,8 @@ const POOL: [usize; 2] = [48, 128];
 const PAIRS_OF_A_THREAD: usize = 32;
 /// The same with pairs of general convex shapes, each as costly as many others.
 const CONVEX_PAIRS_OF_A_THREAD: usize = 8;
+/// The same with distances from terrain, a search among its cells.
+const SEARCHES_OF_A_THREAD: usize = 1;
 /// The maximum number of threads of the narrow phase; each has memory for all contacts of the environment.
 const MAX_THREADS: usize = 8;
 /// The maximum number of vertices of the polytope of overlapping shapes. Single precision does not benefit from the
@@ -131,9 +133,13 @@ impl Tables {
         let methods = Vec::from_iter(all.iter().filter_map(|c| method_of_pair(c.kinds)));
         self.words("PAIR_METHOD", methods.iter().map(|method| method.code()));
         let general = all.iter().any(|c| may_be_general(c.kinds));
-        let of_a_thread = match general {
-            true => CONVEX_PAIRS_OF_A_THREAD,
-            false => PAIRS_OF_A_THREAD,
+        let on_terrain = |c: &Candidate| c.kinds[0] == ShapeKind::HeightField;
+        let measured_terrain = measured.iter().any(|m| on_terrain(&m.pair));
+        self.fixed_flag("MEASURES_TERRAIN", measured_terrain);
+        let of_a_thread = match (measured_terrain, general) {
+            (true, _) => SEARCHES_OF_A_THREAD,
+            (false, true) => CONVEX_PAIRS_OF_A_THREAD,
+            (false, false) => PAIRS_OF_A_THREAD,
         };
         capacity.threads = (all.len() / of_a_thread).clamp(1, MAX_THREADS);
         for method in Method::ALL {
@@ -159,8 +165,7 @@ impl Tables {
             capacity.polytope = [vertices, faces];
         }
         // Two manifolds with one point more than their maximum, and both lists.
-        let on_terrain = |c: &Candidate| c.kinds[0] == ShapeKind::HeightField;
-        let any_terrain = candidates.iter().any(on_terrain);
+        let any_terrain = all.iter().any(on_terrain);
         if any_terrain {
             let points = [2 * (MAX_POINTS + 1), FACE_LIST_POINTS, PATCH_LIST_POINTS];
             capacity.terrain = points.map(|points| points * TERRAIN_POINT_SIZE);

@@ -2,7 +2,6 @@
 //! their contact range, and have one contact each, the deepest.
 
 use crate::methods::method_of_pair;
-use clench_collide::ShapeKind;
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::{Model, Sensor, SensorTarget};
 
@@ -43,15 +42,5 @@ pub(super) fn pairs_of(m: &Model, sensor: &Sensor) -> Vec<Measured> {
 
 /// Returns the pairs of all sensors, one after another.
 pub(super) fn measured(m: &Model) -> Vec<Measured> {
-    let each = m.sensors.iter().filter(|s| is_measured(m, s));
-    each.flat_map(|s| pairs_of(m, s)).collect()
-}
-
-/// Returns true if a device measures a distance sensor: not on terrain, which may have many cells within a cutoff.
-pub(super) fn is_measured(m: &Model, sensor: &Sensor) -> bool {
-    let SensorTarget::Geoms(sets) = &sensor.target else {
-        return false;
-    };
-    let mut geoms = sets.iter().cloned().flatten();
-    geoms.all(|g| m.geoms[g].kind != ShapeKind::HeightField)
+    m.sensors.iter().flat_map(|s| pairs_of(m, s)).collect()
 }

@@ -41,6 +41,8 @@ row! {
         step: 2,
         elevation: 1,
         base: 1,
+        /// The radius of a ball about the origin that contains it.
+        radius: 1,
     }
 }
 /// The start directions of hill climbing to the furthest vertex: one per octant.
@@ -176,6 +178,7 @@ impl Tables {
             step: [step(x, columns), step(y, rows)],
             elevation: [elevation],
             base: [base],
+            radius: [field.radius()],
         };
         let heights = field.heights().iter().map(|height| elevation * height);
         let row = FieldWords {

@@ -9,19 +9,23 @@ mod contacts;
 mod distances;
 mod equalities;
 mod forces;
+mod frames;
 mod gains;
 mod histories;
 mod hulls;
 mod metric;
 mod rays;
 mod sensors;
+mod skins;
+mod solids;
 mod stiction;
 mod tendons;
 
 pub(crate) use constraints::BLOCK_SIZE;
 pub(crate) use contacts::CONTACT_SIZE;
 pub(crate) use rays::ray_count;
-pub(crate) use sensors::{has_sensor_history, is_read};
+pub(crate) use sensors::has_sensor_history;
+pub(crate) use skins::taxel_count;
 
 use crate::codes::{Code, Row};
 use crate::kernel_options::KernelOptions;
@@ -133,6 +137,7 @@ impl Tables {
         tables.actuators(model);
         tables.cameras(model);
         tables.sensors(model);
+        tables.solids(model, settings);
         tables.rays::<S>(model);
         tables.settings(model, settings);
         tables.stiction(model, settings);

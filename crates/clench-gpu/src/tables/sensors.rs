@@ -1,6 +1,8 @@
 //! Sensors: their method, object and cutoff; and the actuators of each tendon.
 
-use super::distances::{is_measured, pairs_of};
+use super::distances::pairs_of;
+use super::frames::Frame;
+use super::solids::solid_count;
 use super::{NONE, Tables, starts};
 use crate::codes::{Code, codes, row};
 use clench_rigid::model::{
@@ -54,7 +56,9 @@ codes! {
         Contacts = "OF_CONTACTS",
         Distance = "OF_DISTANCE",
         Projection = "OF_PROJECTION",
-        Rays = "OF_RAYS",
+        Enclosed = "OF_ENCLOSED",
+        /// Read by a kernel of their own.
+        Elsewhere = "OF_ELSEWHERE",
     }
 }
 codes! {
@@ -87,18 +91,6 @@ codes! {
 /// The flags of a geom's sides of a query.
 const FIRST_SIDE: usize = 1;
 const SECOND_SIDE: usize = 2;
-codes! {
-    /// The kinds of object with a frame.
-    enum Frame {
-        None = "NO_FRAME",
-        Inertial = "INERTIAL_FRAME",
-        Body = "BODY_FRAME",
-        Geom = "GEOM_FRAME",
-        Site = "SITE_FRAME",
-        Camera = "CAMERA_FRAME",
-    }
-}
-
 /// The words of an object: the kind of its frame, its index, and its body.
 #[derive(Clone, Copy)]
 struct Object {
@@ -128,10 +120,10 @@ fn frame(m: &Model, object: FrameObject) -> Object {
     Object { kind, index, body }
 }
 
-/// Returns the method that reads a kind of sensor; `None` if the device does not support it.
-fn method(kind: SensorKind) -> Option<Method> {
+/// Returns the method that reads a kind of sensor, except those of enclosure.
+fn method(kind: SensorKind) -> Method {
     use SensorKind as Kind;
-    Some(match kind {
+    match kind {
         Kind::Touch
         | Kind::JointPos
         | Kind::JointVel
@@ -170,10 +162,9 @@ fn method(kind: SensorKind) -> Option<Method> {
         Kind::Contact => Method::Contacts,
         Kind::Distance | Kind::Normal | Kind::FromTo => Method::Distance,
         Kind::CamProjection => Method::Projection,
-        Kind::Rangefinder => Method::Rays,
+        Kind::Rangefinder | Kind::Tactile => Method::Elsewhere,
         Kind::User => Method::Nothing,
-        Kind::Tactile => return None,
-    })
+    }
 }
 
 /// Returns the object of a sensor that has one element, and its reference.
@@ -216,15 +207,17 @@ fn of_element(m: &Model, kind: SensorKind, e: usize) -> [Object; 2] {
     }
 }
 
-/// Returns the method, the object and the reference of a sensor; `None` if the device does not support it. The objects
-/// of distances and contacts are offsets in other tables, which follow.
-fn target(m: &Model, sensor: &Sensor) -> Option<(Method, [Object; 2])> {
+/// Returns the method, the object and the reference of a sensor. The objects of distances, contacts and enclosure are
+/// offsets in other tables, which follow.
+fn target(m: &Model, sensor: &Sensor) -> (Method, [Object; 2]) {
     let objects = match &sensor.target {
         SensorTarget::Frame { object, reference } => {
             let reference = reference.map_or(Object::NONE, |other| frame(m, other));
             [frame(m, *object), reference]
         }
-        SensorTarget::Inside { enclosed: true, .. } => return None,
+        SensorTarget::Inside { enclosed: true, .. } => {
+            return (Method::Enclosed, [Object::NONE; 2]);
+        }
         SensorTarget::Inside {
             site,
             object,
@@ -235,16 +228,16 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(Method, [Object; 2])> {
             Object::new(Frame::Camera, *camera),
         ],
         SensorTarget::Element(e) => of_element(m, sensor.kind, *e),
-        SensorTarget::Rays { .. } | SensorTarget::Nothing => [Object::NONE; 2],
-        SensorTarget::Geoms(_) if !is_measured(m, sensor) => return None,
-        SensorTarget::Geoms(_) => [Object::NONE; 2],
+        SensorTarget::Rays { .. }
+        | SensorTarget::Taxels { .. }
+        | SensorTarget::Geoms(_)
+        | SensorTarget::Nothing => [Object::NONE; 2],
         SensorTarget::Contacts(query) => {
             let site = query.site.unwrap_or(NONE as usize);
             [Object::NONE, Object::new(Frame::Site, site)]
         }
-        SensorTarget::Taxels { .. } => return None,
     };
-    Some((method(sensor.kind)?, objects))
+    (method(sensor.kind), objects)
 }
 
 /// Returns the words of a contact query.
@@ -270,11 +263,6 @@ fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
     row
 }
 
-/// Returns true if a device supports a sensor.
-pub(crate) fn is_read(m: &Model, sensor: &Sensor) -> bool {
-    target(m, sensor).is_some()
-}
-
 /// Returns true if any sensor has a delay or a period, and so a measurement buffer.
 pub(crate) fn has_sensor_history(m: &Model) -> bool {
     m.sensors.iter().any(|sensor| sensor.history.is_some())
@@ -285,21 +273,23 @@ impl Tables {
         self.sensor_constants();
         let p = &m.params;
         let (mut words, mut numbers, mut queries) = (Vec::new(), Vec::new(), Vec::new());
-        let read = |(k, s)| Some((k, s, target(m, s)?));
-        let readable = Vec::from_iter(m.sensors.iter().enumerate().filter_map(read));
         self.flag("SENSING", m.flags.sensor);
         self.flag("ANY_SENSOR_HISTORY", has_sensor_history(m));
-        let buffers = readable.iter().map(|(_, s, _)| s.history.as_ref());
+        let buffers = m.sensors.iter().map(|s| s.history.as_ref());
         let histories = self.histories("SENSOR_HISTORIES", buffers);
-        self.count("NSENSOR", readable.len());
-        let mut measured = 0;
-        for ((k, sensor, (method, [mut object, mut reference])), history) in
-            readable.into_iter().zip(histories)
-        {
+        self.count("NSENSOR", m.sensors.len());
+        let (mut measured, mut solids) = (0, 0);
+        for ((k, sensor), history) in m.sensors.iter().enumerate().zip(histories) {
+            let (method, [mut object, mut reference]) = target(m, sensor);
             if let SensorTarget::Geoms(_) = &sensor.target {
                 object.index = measured;
                 measured += pairs_of(m, sensor).len();
                 reference.index = measured;
+            }
+            if let SensorTarget::Inside { enclosed: true, .. } = &sensor.target {
+                object.index = solids;
+                solids += solid_count(m, sensor);
+                reference.index = solids;
             }
             if let SensorTarget::Contacts(of) = &sensor.target {
                 object.index = queries.len();
@@ -350,8 +340,8 @@ impl Tables {
         self.constant("SECOND_SIDE", SECOND_SIDE);
         // A method that reads one kind does not need its code.
         let kinds = SensorKind::ALL.iter().map(|&kind| (kind, method(kind)));
-        let has_others = |&(_, of): &(SensorKind, Option<Method>)| {
-            kinds.clone().filter(|k| k.1 == of).count() > 1
+        let has_others = |&(_, of): &(SensorKind, Method)| {
+            of != Method::Elsewhere && kinds.clone().filter(|k| k.1 == of).count() > 1
         };
         for (kind, _) in kinds.clone().filter(has_others) {
             let name = format!("SENSE_{}", kind.name().to_uppercase());

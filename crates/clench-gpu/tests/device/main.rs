@@ -17,3 +17,4 @@ mod solver;
 mod stages;
 mod steps;
 mod stiction;
+mod touch;

@@ -191,27 +191,3 @@ fn those_of_rays_and_cameras_that_differ() {
 fn those_of_a_runner() {
     agree(&own("runner"));
 }
-
-/// Checks the error for the sensor `eye`, which is not supported yet.
-fn refused(sensor: &str, kind: &str) {
-    let model = text(&own("sensors").replace("<user dim=\"2\"/>", sensor));
-    if common::batch(&model, 1).is_none() {
-        return;
-    }
-    let batch = clench_gpu::batch::<f32>(model, 1, BatchOptions::default(), None);
-    let error = batch
-        .expect("a device")
-        .record(&["sensordata"])
-        .expect_err(kind)
-        .to_string();
-    let expected = format!("cannot read {kind} sensor \"eye\" yet");
-    assert!(error.contains(&expected), "{error}");
-}
-
-#[test]
-fn a_sensor_that_is_not_read_yet_is_named() {
-    refused(
-        "<insidesite name='eye' site='imu' objtype='site' objname='imu' enclosed='true'/>",
-        "insidesite",
-    );
-}

@@ -29,15 +29,9 @@ fn unsupported_features_are_refused_by_name() {
             "flag sleep",
         ),
         (
-            model("").replace(
-                "</mujoco>",
-                "<sensor><insidesite name='in' site='s' objtype='geom' objname='ball' enclosed='true' nsample='3' delay='0.1'/></sensor></mujoco>",
-            )
-            .replace("<worldbody>", "<worldbody><site name='s'/>"),
-            "insidesite sensor \"in\": a sensor of this kind is not supported yet",
-        ),
-        (
-            model("<option solver='CG'/><custom><text name='clench.contact_model' data='coulomb'/></custom>"),
+            model(
+                "<option solver='CG'/><custom><text name='clench.contact_model' data='coulomb'/></custom>",
+            ),
             "option contact_model: Coulomb's law needs Newton's method",
         ),
         (

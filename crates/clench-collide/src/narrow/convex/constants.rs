@@ -1,6 +1,8 @@
 //! The numbers of the methods for convex shapes, by the names that the GPU kernels have for them.
 
 use super::{clipping, ellipse, epa, gjk, overlap, polytope, prism, refine, terrain};
+use crate::distance::{MIN_SEARCH_SHARE, SEARCH_GROWTH};
+use crate::protrusion;
 
 /// Names and values of tolerances.
 pub const CONVEX_CONSTANTS: &[(&str, f64)] = &[
@@ -21,6 +23,9 @@ pub const CONVEX_CONSTANTS: &[(&str, f64)] = &[
     ("TERRAIN_FACE_DEPTH_RATIO", terrain::FACE_DEPTH_RATIO),
     ("TERRAIN_FACE_NORMAL_RATIO", terrain::FACE_NORMAL_RATIO),
     ("TERRAIN_CLEAR", terrain::CLEAR),
+    ("TERRAIN_LEAST_SEARCH", MIN_SEARCH_SHARE),
+    ("TERRAIN_SEARCH_GROWTH", SEARCH_GROWTH),
+    ("ASCENT_FIRST_STEP", protrusion::FIRST_STEP),
 ];
 
 /// Names and values of limits.

@@ -94,20 +94,28 @@ fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
     on_terrain = ANY_TERRAIN && first.kind == HEIGHT_FIELD;
     if (on_terrain) {
         frame.axes = mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-        begin_terrain(geom, second, rotation, offset, range);
+        begin_terrain(pair, geom, second, offset, range);
     }
     for (var round = 0u; on_terrain || round < 1u; round++) {
         var remaining = SEARCH;
+        var reach = range;
         if (on_terrain) {
+            if (search_begins) {
+                begin_search(second, rotation);
+            }
             if (!find_round()) {
+                if (widens_search()) {
+                    continue;
+                }
                 break;
             }
+            reach = terrain_range;
             remaining = begin_round(second, rotation);
             frame.center = triangle_origin;
             given = remaining == SHARED;
         }
         if (remaining != NO_WORK) {
-            var touches = find_touching(given, range);
+            var touches = find_touching(given, reach);
             if (on_terrain) {
                 if (touches) {
                     touches = classify();
@@ -116,11 +124,12 @@ fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
                 }
             }
             if (touches) {
-                add_contacts(pair, frame, range);
+                add_contacts(pair, frame, reach);
             }
         }
         if (on_terrain) {
             end_round();
+            narrow_search(pair);
         }
     }
     if (on_terrain) {

@@ -62,6 +62,13 @@ fn begin_bounds(body: Body, rotation: mat3x3f, offset: vec3f, around: f32) -> bo
     return true;
 }
 
+// Reduces the bounds by a length.
+fn narrow_bounds(by: f32) {
+    for (var k = 0u; k < bound(BOUND_DIRECTIONS); k++) {
+        bounds[k] -= by * length(direction_of_bound(k));
+    }
+}
+
 fn is_in_window(cell: vec2i) -> bool {
     return all(cell >= window_first) && all(cell < window_first + window_size);
 }

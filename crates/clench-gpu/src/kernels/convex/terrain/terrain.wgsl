@@ -22,7 +22,10 @@ const KNOWN: u32 = 3u;
 // True if contacts are those of a triangle, to be listed.
 var<private> on_terrain: bool;
 var<private> terrain_offset: vec3f;
+// The range of the search, which may grow up to a limit.
 var<private> terrain_range: f32;
+var<private> terrain_limit: f32;
+var<private> search_begins: bool;
 // Contacts with the least distance along directions that count and that do not.
 var<private> deepest: TerrainPoint;
 var<private> rejected: TerrainPoint;
@@ -46,13 +49,26 @@ var<private> added_count: u32;
 var<private> added_to: u32;
 var<private> added_least: f32;
 
-// Begins with a body at `offset` in the field's frame.
-fn begin_terrain(geom: u32, body: Body, rotation: mat3x3f, offset: vec3f, range: f32) {
+// Begins with a body at `offset` in the field's frame. A distance is searched among near cells first, as
+// `clench-collide/src/distance.rs` does. No point of the field is further away than the sum.
+fn begin_terrain(pair: u32, geom: u32, body: Body, offset: vec3f, range: f32) {
     begin_grid(words[GEOM_HULL + geom]);
     terrain_size = body.reach;
     terrain_tolerance = max((body.reach + length(offset)) * EPSILON * 64.0, body.reach * 1e-9);
     terrain_offset = offset;
+    terrain_limit = range;
     terrain_range = range;
+    if (MEASURES_TERRAIN && pair >= NPAIR) {
+        let furthest = grid.radius + body.reach + length(offset);
+        terrain_limit = min(range, furthest);
+        terrain_range = min(max(body.reach, furthest * TERRAIN_LEAST_SEARCH), terrain_limit);
+    }
+    search_begins = true;
+}
+
+// Begins a search within the range.
+fn begin_search(body: Body, rotation: mat3x3f) {
+    search_begins = false;
     manifold_counts = array<u32, 2>();
     let none = TerrainPoint(vec3f(), vec3f(), UNMOVABLE);
     deepest = none;
@@ -63,7 +79,7 @@ fn begin_terrain(geom: u32, body: Body, rotation: mat3x3f, offset: vec3f, range:
     any_is_near = false;
     next_half = 0u;
     half_count = 0u;
-    if (begin_bounds(body, rotation, offset, body.radius + range + terrain_tolerance)) {
+    if (begin_bounds(body, rotation, terrain_offset, body.radius + terrain_range + terrain_tolerance)) {
         // The cell below the lowest point comes first: the deepest contact saves much of the remaining work.
         half_count = 2u * (1u + u32(window_size.x * window_size.y));
     }
@@ -88,6 +104,27 @@ fn find_round() -> bool {
     }
     next_half++;
     return any_is_near && next_half <= half_count + CLOSING_ROUNDS;
+}
+
+// Reduces the range of a distance to the least one so far: what is further away does not matter.
+fn narrow_search(pair: u32) {
+    let least = min(deepest.distance, rejected.distance) + 2.0 * terrain_tolerance;
+    if (MEASURES_TERRAIN && pair >= NPAIR && least > 2.0 * terrain_tolerance && least < terrain_range) {
+        narrow_bounds(terrain_range - least);
+        terrain_range = least;
+        // A search that found something is the last one.
+        terrain_limit = least;
+    }
+}
+
+// Ends a search. Returns true if it found nothing and a larger range remains, in which the next one begins.
+fn widens_search() -> bool {
+    if (!MEASURES_TERRAIN || manifold_counts[COUNTED] > 0u || terrain_range >= terrain_limit) {
+        return false;
+    }
+    terrain_range = min(terrain_range * TERRAIN_SEARCH_GROWTH, terrain_limit);
+    search_begins = true;
+    return true;
 }
 
 fn deeper(old: TerrainPoint, point: TerrainPoint) -> TerrainPoint {
