@@ -39,8 +39,7 @@ pub fn batch<S: GpuReal>(
     device: Option<&str>,
 ) -> Result<Batch<S>, GpuError> {
     let on_device = GpuOptions {
-        // The host handles automatic resets.
-        options: options.options.autoreset(false),
+        options: options.options,
         device: device.map(str::to_owned),
         general_kernels: false,
     };
@@ -64,10 +63,11 @@ fn report_field(output: Output) -> Option<&'static str> {
 }
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// Collects the outcome of each running environment from the field `report` of the reports.
+    /// Collects the outcome of each running environment from the field `report` of the reports, and its resets.
     fn outcomes(
         &self,
         report: &str,
+        resets: &[u32],
         running: &[bool],
         outcomes: &mut [Outcome],
     ) -> Result<(), GpuError> {
@@ -80,16 +80,17 @@ impl<S: GpuReal> GpuBatch<S> {
                 self.report("fault_field")?,
                 self.report("fault_index")?,
                 self.report("fault_value")?,
+                self.report("repeats")?,
             ])
         };
         for env in (0..self.count).filter(|&env| running[env]) {
+            let detail = |k: usize| details.as_ref().map_or(0, |all| all[k][env]);
             let failure = faults[env].map(|fault| match fault {
                 GpuFault::Singular => StepFailure::Singular,
                 GpuFault::Unfinished => StepFailure::Unfinished,
                 GpuFault::ContactOverflow { limit } => StepFailure::ContactOverflow { limit },
                 GpuFault::StickOverflow { .. } => StepFailure::OverBudget(Excess::StickPairs),
                 GpuFault::Diverged => {
-                    let detail = |k: usize| details.as_ref().map_or(0, |all| all[k][env]);
                     let field = DivergedField::of(detail(0));
                     StepFailure::Diverged {
                         field: field.unwrap_or(DivergedField::Qacc).name(),
@@ -100,6 +101,8 @@ impl<S: GpuReal> GpuBatch<S> {
             });
             outcomes[env] = Outcome {
                 steps: steps[env] as usize,
+                resets: resets[env] as usize,
+                restarted: resets[env] > 0 || detail(3) > 0,
                 failure,
             };
         }
@@ -191,17 +194,21 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     fn step(
         &mut self,
         steps: usize,
+        keeps_controls: bool,
         running: &[bool],
         outcomes: &mut [Outcome],
     ) -> Result<(), SimError> {
         self.choose(running);
-        GpuBatch::step(self, steps)?;
-        Ok(self.outcomes("status", running, outcomes)?)
+        self.keep_controls(keeps_controls);
+        self.dispatch(steps)?;
+        let none = vec![0; self.count];
+        let resets = self.catch_up(&none)?;
+        Ok(self.outcomes("status", &resets, running, outcomes)?)
     }
 
     fn forward(&mut self, running: &[bool], outcomes: &mut [Outcome]) -> Result<(), SimError> {
         self.choose(running);
         self.forward_and_check()?;
-        Ok(self.outcomes("failure", running, outcomes)?)
+        Ok(self.outcomes("failure", &vec![0; self.count], running, outcomes)?)
     }
 }

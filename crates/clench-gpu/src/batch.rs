@@ -143,11 +143,25 @@ impl<S: GpuReal> GpuBatch<S> {
 
     /// Advances all running environments by the given number of time steps. Faults of single environments are reported
     /// in [`statuses`](Self::statuses). Returns while the device still computes the last steps; reads and
-    /// [`finish`](Self::finish) wait for them.
+    /// [`finish`](Self::finish) wait for them. With the option `autoreset`, steps that fail are repeated from the
+    /// initial state, see [`resets`](Self::resets), and the call waits for the device.
     ///
     /// # Errors
     /// Returns an error if the device was lost, perhaps in the steps of the previous call.
     pub fn step(&mut self, steps: usize) -> Result<(), GpuError> {
+        if !self.settings.autoreset {
+            return self.dispatch(steps);
+        }
+        let before = self.resets()?;
+        self.dispatch(steps)?;
+        self.catch_up(&before).map(drop)
+    }
+
+    /// Submits steps of all running environments.
+    ///
+    /// # Errors
+    /// Returns an error if the device was lost, perhaps in the steps of the previous call.
+    pub(crate) fn dispatch(&mut self, steps: usize) -> Result<(), GpuError> {
         let mut remaining = steps;
         while remaining > 0 {
             let now = remaining.min(STEPS_AT_A_TIME);

@@ -30,9 +30,6 @@ macro_rules! rules {
 
 rules! {
     "a model without degrees of freedom has nothing to step": |s| (s.model.nv == 0).then(|| "model".to_owned());
-    "environments are not reset automatically yet: check the statuses": |s| {
-        s.settings.autoreset.then(|| "option autoreset".to_owned())
-    };
     "Coulomb's law needs Newton's method": |s| {
         let coulomb = s.settings.contact_model == ContactModel::Coulomb;
         let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;

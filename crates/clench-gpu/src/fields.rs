@@ -305,6 +305,10 @@ fields! {
     restart: 1;
     /// Steps since the last reset.
     steps: 1;
+    /// Automatic resets.
+    resets: 1;
+    /// Nonzero if the next step repeats one that failed, from the initial state.
+    repeats: 1;
     /// The number of near pairs, and their indices in canonical order; the contacts of a pair replace its index.
     nnear: 1;
     near_pairs: c.pairs;

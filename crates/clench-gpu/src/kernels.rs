@@ -83,7 +83,7 @@ macro_rules! kernels {
 
 kernels! {
     /// Resets environments to the initial state.
-    RESTART = "restart", Thread: "restart";
+    RESTART = "restart", Thread: "initial_state", "restart";
     /// Computes poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
     POSITIONS = "positions", Team: "team", "kinematics", "com", "tree", "substitution", "chains", "wrap", "tendon",
         "outputs", "transmission", "articulated", "outer", "factor_m", "inertia";
@@ -127,17 +127,17 @@ kernels! {
     /// Checks that the results of a forward pass outside a step are within limits.
     CHECK_FORWARD = "check_forward", Team: "team", "check_results", "check_forward";
     /// Advances the state by semi-implicit Euler; also by `discrete`, whose acceleration is that of the step.
-    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "euler";
+    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "euler";
     /// Does the same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "gyroscopic", "implicit_fast";
     /// Does the same with Coriolis forces.
     IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "coriolis", "lu", "implicit";
     /// Does the same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "rk4";
 }
 
 /// The inputs of the constants before every kernel, besides the tables.

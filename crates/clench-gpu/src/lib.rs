@@ -13,6 +13,7 @@
 
 #![deny(unreachable_pub)]
 
+mod autoreset;
 mod backend;
 mod base;
 mod batch;

@@ -104,7 +104,9 @@ impl<S: GpuReal> GpuBatch<S> {
         };
         let codes = Vec::from_iter(running.iter().map(|runs| code(runs).code() as u32));
         self.write_report("status", &codes);
-        self.write_report("steps", &vec![0; self.count]);
+        for name in ["steps", "resets", "repeats"] {
+            self.write_report(name, &vec![0; self.count]);
+        }
     }
 
     /// Writes a report field of all environments.

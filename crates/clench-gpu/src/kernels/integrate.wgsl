@@ -107,6 +107,8 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
         if (ANY_SENSOR_HISTORY) {
             push_measurements();
         }
+    } else if (is_repeated(fault)) {
+        start_over();
     } else {
         restore_start();
         for (var i = member; i < bound(NV); i += TEAM) {
@@ -120,8 +122,11 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     join();
     if (is_first() && fault == RUNNING) {
         reports[STEPS * envs + env] += 1u;
+        if (AUTORESET) {
+            reports[REPEATS * envs + env] = 0u;
+        }
     } else if (is_first()) {
-        reports[STATUS * envs + env] = fault;
+        count_failure(fault);
     }
 }
 

@@ -6,14 +6,11 @@ fn restart(@builtin(global_invocation_id) id: vec3u) {
     if (env >= envs || reports[RESTART * envs + env] == 0u) {
         return;
     }
-    for (var k = 0u; k < DYNAMIC_KIND; k++) {
-        put_state(k, numbers[INITIAL_STATE + k]);
-    }
-    // The fields of slots come last. All slots are empty.
-    for (var k = DYNAMIC_KIND; k < STATE; k++) {
-        put_state(k, 0.0);
+    for (var k = 0u; k < STATE; k++) {
+        put_state(k, initial_number(k));
     }
     reports[RESTART * envs + env] = 0u;
     reports[STATUS * envs + env] = RUNNING;
     reports[STEPS * envs + env] = 0u;
+    reports[REPEATS * envs + env] = 0u;
 }

@@ -128,6 +128,7 @@ impl Tables {
         let elliptic = s.friction_cone == FrictionCone::Elliptic;
         self.flag("ELLIPTIC_CONES", elliptic && !coulomb);
         self.fixed_flag("COULOMB_CONTACTS", coulomb);
+        self.fixed_flag("AUTORESET", s.autoreset);
         self.flag("EXACT_DIAGONAL", s.flags.diagexact);
         self.flag("WARMSTART", s.solver.warmstart);
         self.count("ITERATIONS", s.solver.iterations);

@@ -49,6 +49,8 @@ pub(crate) const ENVS: usize = 2;
 pub(crate) const MEASURES: usize = 3;
 /// The value of an unlimited range; a device may not support infinity.
 const ENDLESS: f64 = 3e38;
+/// The index of the word that is nonzero if an automatic reset keeps the controls.
+pub(crate) const KEEPS_CONTROLS: usize = 4;
 /// The minimum divisor, mass (kg) and squared side of a box (kg m²), MuJoCo's `mjMINVAL`.
 const TINY: f64 = 1e-15;
 
@@ -127,6 +129,7 @@ impl Tables {
         tables.words("OWN_PARAMETERS", [0]);
         tables.words("ENVS", [0]);
         tables.words("MEASURES", [0]);
+        tables.words("KEEPS_CONTROLS", [0]);
         tables.bodies(model);
         tables.joints(model);
         tables.dofs(model);

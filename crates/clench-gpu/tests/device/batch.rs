@@ -174,24 +174,6 @@ fn a_forward_pass_reports_faults() {
 }
 
 #[test]
-fn a_diverged_environment_is_reset_with_autoreset() {
-    let model = text(&own("runner"));
-    if common::batch(&model, 1).is_none() {
-        return;
-    }
-    let options = BatchOptions {
-        options: RigidOptions::new().autoreset(true),
-        ..BatchOptions::default()
-    };
-    let mut batch = clench_gpu::batch(model, 3, options, None).expect("a device");
-    batch.state.qfrc_applied.row_mut(1)[1] = 1e30;
-    let summary = batch.step_n(2).expect("a device");
-    assert_eq!((summary.failed, summary.resets), (0, 1));
-    assert_eq!(batch.resets(), [0, 1, 0]);
-    assert_bits(batch.state.qpos.row(1), batch.state.qpos.row(0), "qpos");
-}
-
-#[test]
 fn the_pool_is_told() {
     let model = text(&own("runner"));
     if common::batch(&model, 1).is_none() {

@@ -1,6 +1,7 @@
 //! Tests of the device through the crate's public API, in one program so that its generic code is compiled once, and
 //! kernels of several models are compiled in parallel.
 
+mod autoreset;
 mod batch;
 mod common;
 mod discrete;

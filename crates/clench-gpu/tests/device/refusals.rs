@@ -21,10 +21,6 @@ fn model(option: &str) -> String {
 fn unsupported_features_are_refused_by_name() {
     for (text_of_model, words) in [
         (
-            model("<option><flag autoreset='enable'/></option>"),
-            "option autoreset",
-        ),
-        (
             model("<option><flag sleep='enable'/></option>"),
             "flag sleep",
         ),

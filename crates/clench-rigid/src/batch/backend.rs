@@ -52,13 +52,16 @@ pub trait Backend<S>: Send {
     /// Returns an error if the device failed.
     fn read_output(&mut self, output: Output, rows: &mut [S]) -> Result<(), SimError>;
     /// Advances the environments that are `running` by `steps` time steps, and reports their outcomes. An environment
-    /// that fails keeps its last good state and stops. Environments that do not run do not change.
+    /// that fails keeps its last good state and stops. With the option `autoreset` it first repeats the step from the
+    /// initial state, as a [`Batch`](super::Batch) does; this state includes the controls unless `keeps_controls`.
+    /// Environments that do not run do not change.
     ///
     /// # Errors
     /// Returns an error if the device failed.
     fn step(
         &mut self,
         steps: usize,
+        keeps_controls: bool,
         running: &[bool],
         outcomes: &mut [Outcome],
     ) -> Result<(), SimError>;
@@ -72,8 +75,12 @@ pub trait Backend<S>: Send {
 /// The outcome of a call for an environment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// The number of completed steps.
+    /// The number of completed steps, since the last automatic reset if there was one.
     pub steps: usize,
+    /// The number of automatic resets after which a step succeeded.
+    pub resets: usize,
+    /// True if the state was reset, even if the next step failed too.
+    pub restarted: bool,
     /// The failure that prevented the next step.
     pub failure: Option<StepFailure>,
 }

@@ -16,7 +16,7 @@ pub(super) struct Mirror<S: Precision> {
     pub(super) fields: Vec<Vec<S>>,
     /// True for environments that take part in a call and still run.
     pub(super) running: Vec<bool>,
-    /// True for environments that repeat their step from the initial state.
+    /// True for environments that begin a call in the initial state, because theirs is invalid.
     pub(super) restarted: Vec<bool>,
     pub(super) outcomes: Vec<Outcome>,
     /// Memory for a field or an output.

@@ -94,21 +94,19 @@ impl<S: Precision> Batch<S> {
         }
         let may_restart = self.settings.autoreset && call.pass == Pass::Step;
         self.upload(mirror, call.pass, may_restart, &mut summary)?;
+        if mirror.restarted.contains(&true) {
+            self.start_over(mirror, &mut summary)?;
+        }
         let constant_controls = matches!(call.controls, Controls::Held);
         // The rounded time determines when a sensor with a period is due, so every step gets its own time.
         let periods = &self.model.params.sensor_interval;
         let timed = periods.iter().any(|&period| period > 0.0);
-        let is_uniform = constant_controls && trace.is_empty() && !may_restart && !timed;
+        let is_uniform = constant_controls && trace.is_empty() && !timed;
         let mut step = call.range.start;
-        while step < call.range.end
-            && (mirror.running.contains(&true) || mirror.restarted.contains(&true))
-        {
+        while step < call.range.end && mirror.running.contains(&true) {
             let count = if is_uniform { call.range.end - step } else { 1 };
             self.control(mirror, call, step)?;
-            self.advance(mirror, call.pass, count, may_restart, &mut summary)?;
-            if mirror.restarted.contains(&true) {
-                self.start_over(mirror, call, step, &mut summary)?;
-            }
+            self.advance(mirror, call.pass, (count, constant_controls), &mut summary)?;
             step += count;
             if !trace.is_empty() {
                 self.download(mirror, call.pass)?;
@@ -200,13 +198,13 @@ impl<S: Precision> Batch<S> {
         mirror.backend.write("ctrl", fields)
     }
 
-    /// Runs `count` steps or a forward pass, and records which environments failed or must be reset.
+    /// Runs `count` steps or a forward pass, and records which environments failed or were reset; those keep their
+    /// controls unless these are constant.
     fn advance(
         &mut self,
         mirror: &mut Mirror<S>,
         pass: Pass,
-        count: usize,
-        may_restart: bool,
+        (count, constant_controls): (usize, bool),
         summary: &mut Summary,
     ) -> Result<(), SimError> {
         let reads_time = |s: &Sensor| s.kind == SensorKind::Clock || s.history.is_some();
@@ -219,14 +217,23 @@ impl<S: Precision> Batch<S> {
         }
         let (running, outcomes) = (&mirror.running, &mut mirror.outcomes);
         match pass {
-            Pass::Step => mirror.backend.step(count, running, outcomes)?,
+            Pass::Step => {
+                (mirror.backend).step(count, !constant_controls, running, outcomes)?;
+            }
             Pass::Forward | Pass::Query => mirror.backend.forward(running, outcomes)?,
         }
+        let mut any_restarted = false;
         for env in 0..mirror.running.len() {
             if !mirror.running[env] {
                 continue;
             }
             let outcome = mirror.outcomes[env];
+            any_restarted |= outcome.restarted;
+            if outcome.restarted {
+                self.state.write(env, self.models.initial(env))?;
+                self.resets[env] += outcome.resets as u64;
+                summary.resets += outcome.resets;
+            }
             let clock = &mut self.state.time.row_mut(env)[0];
             // Accumulated with the same rounding as on the CPU.
             let timestep = S::new(self.model.params.timestep).to_f64();
@@ -236,20 +243,25 @@ impl<S: Precision> Batch<S> {
                 continue;
             };
             mirror.running[env] = false;
-            let out_of_capacity = matches!(
-                failure,
-                StepFailure::ContactOverflow { .. }
-                    | StepFailure::OverBudget(_)
-                    | StepFailure::Unfinished
-            );
-            if may_restart && !out_of_capacity {
-                mirror.restarted[env] = true;
-            } else if pass != Pass::Query {
+            if pass != Pass::Query {
                 self.status[env] = EnvStatus::Failed(self.fault(failure, time));
                 summary.failed += 1;
             }
         }
+        if any_restarted {
+            self.follow_resets(mirror, constant_controls);
+        }
         Ok(())
+    }
+
+    /// Copies the inputs that the device has reset.
+    fn follow_resets(&mut self, mirror: &mut Mirror<S>, constant_controls: bool) {
+        for (field, numbers) in FIELDS.iter().zip(&mut mirror.fields) {
+            let is_input = !StateRows::<S>::MOVING.contains(&field.name);
+            if is_input && (constant_controls || field.name != "ctrl") {
+                self.state.read_field(field.name, numbers);
+            }
+        }
     }
 
     fn fault(&self, failure: StepFailure, time: f64) -> Fault {
@@ -280,35 +292,19 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Repeats failed steps from the initial state.
+    /// Begins environments with an invalid state in the initial one.
     fn start_over(
         &mut self,
         mirror: &mut Mirror<S>,
-        call: &Call<S>,
-        step: usize,
         summary: &mut Summary,
     ) -> Result<(), SimError> {
-        // The steps of the other environments are not yet on the host.
-        self.download(mirror, Pass::Step)?;
-        let others = mirror.running.clone();
-        swap(&mut mirror.running, &mut mirror.restarted);
-        for env in 0..others.len() {
-            if mirror.running[env] {
-                self.state.write(env, self.models.initial(env))?;
-            }
+        for env in (0..mirror.running.len()).filter(|&env| mirror.restarted[env]) {
+            self.state.write(env, self.models.initial(env))?;
+            mirror.running[env] = true;
+            self.resets[env] += 1;
+            summary.resets += 1;
         }
-        self.upload(mirror, Pass::Step, false, summary)?;
-        self.control(mirror, call, step)?;
-        self.advance(mirror, Pass::Step, 1, false, summary)?;
-        mirror.restarted.fill(false);
-        for (env, other) in others.into_iter().enumerate() {
-            if mirror.running[env] {
-                self.resets[env] += 1;
-                summary.resets += 1;
-            }
-            mirror.running[env] |= other;
-        }
-        Ok(())
+        self.upload(mirror, Pass::Step, false, summary)
     }
 
     /// Downloads the fields that steps change.

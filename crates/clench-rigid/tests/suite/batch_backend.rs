@@ -18,6 +18,7 @@ struct Played {
     sims: Vec<Sim<f64>>,
     /// The number of uploads of a field.
     uploads: Arc<AtomicUsize>,
+    autoreset: bool,
 }
 
 /// Returns the numbers of a field of a state that the device holds.
@@ -63,22 +64,48 @@ fn replace(state: &mut State<f64>, field: &str, row: &[f64]) {
     numbers.copy_from_slice(row);
 }
 
-fn outcome(steps: usize, done: Result<(), SimError>) -> Outcome {
-    let failure = match done {
-        Ok(()) => None,
-        Err(SimError::Fault(Fault::Diverged {
+fn failure(error: SimError) -> StepFailure {
+    match error {
+        SimError::Fault(Fault::Diverged {
             field,
             index,
             value,
             ..
-        })) => Some(StepFailure::Diverged {
+        }) => StepFailure::Diverged {
             field,
             index,
             value,
-        }),
-        Err(error) => panic!("{error}"),
-    };
-    Outcome { steps, failure }
+        },
+        error => panic!("{error}"),
+    }
+}
+
+/// Makes steps of a simulation. With `autoreset`, one that fails is repeated from the initial state.
+fn steps(sim: &mut Sim<f64>, steps: usize, autoreset: bool, keeps_controls: bool) -> Outcome {
+    let (mut found, mut repeats, mut remaining) = (Outcome::default(), false, steps);
+    while remaining > 0 {
+        match sim.step() {
+            Ok(()) => {
+                remaining -= 1;
+                found.steps += 1;
+                found.resets += usize::from(repeats);
+                repeats = false;
+            }
+            Err(_) if autoreset && !repeats => {
+                let ctrl = sim.state.ctrl.clone();
+                sim.state = State::new(sim.model());
+                if keeps_controls {
+                    sim.state.ctrl = ctrl;
+                }
+                (found.steps, found.restarted, repeats) = (0, true, true);
+            }
+            Err(error) => {
+                found.failure = Some(failure(error));
+                break;
+            }
+        }
+    }
+    found
 }
 
 impl Backend<f64> for Played {
@@ -127,7 +154,8 @@ impl Backend<f64> for Played {
     }
     fn step(
         &mut self,
-        steps: usize,
+        count: usize,
+        keeps_controls: bool,
         running: &[bool],
         outcomes: &mut [Outcome],
     ) -> Result<(), SimError> {
@@ -137,9 +165,7 @@ impl Backend<f64> for Played {
             .enumerate()
             .filter(|(env, _)| running[*env])
         {
-            let mut done = 0;
-            let ended = (0..steps).try_for_each(|_| sim.step().inspect(|()| done += 1));
-            outcomes[env] = outcome(done, ended);
+            outcomes[env] = steps(sim, count, self.autoreset, keeps_controls);
         }
         Ok(())
     }
@@ -150,7 +176,10 @@ impl Backend<f64> for Played {
             .enumerate()
             .filter(|(env, _)| running[*env])
         {
-            outcomes[env] = outcome(0, sim.forward());
+            outcomes[env] = Outcome {
+                failure: sim.forward().err().map(failure),
+                ..Outcome::default()
+            };
         }
         Ok(())
     }
@@ -168,6 +197,7 @@ fn both(scene: ModelBuilder, autoreset: bool) -> ([Batch<f64>; 2], Arc<AtomicUsi
     let played = Played {
         sims: (0..COUNT).map(sim).collect(),
         uploads: uploads.clone(),
+        autoreset,
     };
     let played = Batch::with_backend(model.clone(), COUNT, options, Box::new(played));
     let envs = Vec::from_iter(0..COUNT);
@@ -293,11 +323,39 @@ fn those_that_diverge_start_over() {
     let summary = each(&mut batches, |batch| {
         batch.state.qfrc_applied.row_mut(4)[1] = 1e30;
         batch.state.qvel.row_mut(6)[2] = f64::NAN;
+        batch.state.qpos.row_mut(7)[0] = 9.999e9;
+        batch.state.qvel.row_mut(7)[0] = 1e9;
+        batch.state.ctrl.row_mut(7).fill(0.3);
         batch.step_n(5)
     });
     let summary = summary.expect("rows");
-    assert!(summary.resets > 0 && summary.failed == 0, "{summary:?}");
+    assert!(summary.resets > 2 && summary.failed == 0, "{summary:?}");
     assert_eq!(batches[0].resets(), batches[1].resets());
+    assert_same(&batches);
+    // The inputs that a reset cleared are written again.
+    each(&mut batches, |batch| {
+        batch.state.ctrl.row_mut(7).fill(0.3);
+        batch.step_n(2)
+    })
+    .expect("good states");
+    assert_same(&batches);
+}
+
+#[test]
+fn a_rollout_that_diverges_keeps_its_controls() {
+    let (mut batches, _) = both(walker(), true);
+    let nu = batches[0].model().nu();
+    let ctrl = Vec::from_iter((0..COUNT * 6 * nu).map(|i| (0.3 * i as f64).sin()));
+    let recorded = batches.each_mut().map(|batch| {
+        batch.state.qpos.row_mut(7)[0] = 9.999e9;
+        batch.state.qvel.row_mut(7)[0] = 1e9;
+        let recording = batch.rollout(6, Controls::Each(&ctrl), &["qpos", "qacc", "time"]);
+        let rows = recording.expect("good controls").into_rows();
+        Vec::from_iter(rows.map(|(output, rows)| (output, rows.as_slice().to_vec())))
+    });
+    assert_eq!(batches[0].resets(), batches[1].resets());
+    assert_eq!(batches[0].resets()[7], 1);
+    assert_eq!(recorded[0], recorded[1]);
     assert_same(&batches);
 }
 
