@@ -104,6 +104,7 @@ impl<S: GpuReal> GpuBatch<S> {
         })?;
         check_dofs(model.nv, settings.solver.constraint_solver)?;
         let device = Device::open(options.device.as_deref(), S::FEATURES)?;
+        let sleeps = settings.flags.sleep;
         let kernels = KernelOptions {
             general: options.general_kernels,
             slots: false,
@@ -116,7 +117,7 @@ impl<S: GpuReal> GpuBatch<S> {
         queue.write_buffer(&arrays.words, 0, plan.tables.words.as_bytes());
         queue.write_buffer(&arrays.words, 4 * ENVS as u64, [count as u32].as_bytes());
         queue.write_buffer(&arrays.numbers, 0, plan.tables.numbers_in::<S>().as_bytes());
-        let pipelines = Pipelines::new::<S>(&device, plan.preface, count, &model)?;
+        let pipelines = Pipelines::new::<S>(&device, plan.preface, count, (&model, sleeps))?;
         let mut batch = GpuBatch {
             bindings: arrays.bind(&device),
             own: Vec::new(),
@@ -219,7 +220,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// Returns an error if the device has no such clock or was lost.
     pub fn time_stages(&mut self) -> Result<Vec<(&'static str, f64)>, GpuError> {
-        let kernels = Vec::from_iter(self.step_kernels().cloned());
+        let kernels = Vec::from_iter(self.pipelines.step().cloned());
         let clock = Clock::new(&self.device, kernels.len())?;
         self.submit(|batch, encoder| {
             batch.clear_failures(encoder);
@@ -294,25 +295,9 @@ impl<S: GpuReal> GpuBatch<S> {
         kernels.for_each(|kernel| kernel.dispatch(&mut pass));
     }
 
-    /// Returns the kernels of a step in order.
-    fn step_kernels(&self) -> impl Iterator<Item = &Pipeline> {
-        let pipelines = &self.pipelines;
-        let last = pipelines.advance.len() - 1;
-        let stages = pipelines.advance.iter().enumerate();
-        stages.flat_map(move |(stage, advance)| {
-            // Sensors measure at the start of a step; everything else is from the last forward pass.
-            let measured = pipelines.sensors.iter().filter(move |_| stage == 0);
-            let shown = stage == last || measured.clone().count() > 0;
-            let observed = pipelines.observed().filter(move |_| shown).chain(measured);
-            let dragged = pipelines.drag.iter().filter(move |_| stage == 0);
-            let forward = pipelines.forward.iter().chain(observed);
-            forward.chain(dragged).chain([advance])
-        })
-    }
-
     fn encode_step(&self, encoder: &mut wgpu::CommandEncoder) {
         self.clear_failures(encoder);
-        self.encode(encoder, None, self.step_kernels());
+        self.encode(encoder, None, self.pipelines.step());
     }
 
     /// Enables sensors in every subsequent step and forward pass: `sensordata` can be read, with the values from the
@@ -329,6 +314,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// Returns an error if the device refuses a kernel.
     pub(crate) fn observe(&mut self, sensors: bool) -> Result<(), GpuError> {
+        self.end_rest();
         if sensors {
             let offset = 4 * MEASURES as u64;
             (self.device.queue).write_buffer(&self.arrays.words, offset, [1u32].as_bytes());
@@ -346,6 +332,7 @@ impl<S: GpuReal> GpuBatch<S> {
         if self.model.cameras.is_empty() {
             return Ok(());
         }
+        self.end_rest();
         self.pipelines
             .compile_cameras::<S>(&self.device, self.count)
     }

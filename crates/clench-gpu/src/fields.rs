@@ -1,9 +1,11 @@
 //! The fields of each environment in the device's memory, one per line. Offsets, sizes, the constants of the kernels
 //! and the names for reading and writing are derived from these tables.
 
+use crate::solver_memory::TILE;
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity, has_sensor_history};
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, Model};
+use clench_rigid::state::Size;
 use clench_rigid::state::kind::{Kind, Reference};
 use clench_solver::MAX_ELIMINATED;
 
@@ -64,6 +66,11 @@ fn saves_tendons(m: &Model) -> bool {
     has_yielding_tendons(m) || m.max_stick_pairs.is_some()
 }
 
+/// Returns the numbers of the poses of sleeping trees, and of mocap bodies.
+fn asleep_pose(m: &Model) -> usize {
+    Size::AsleepPose.of(m)
+}
+
 macro_rules! fields {
     ($(#[$doc:meta])* $maker:ident($m:ident, $c:ident); $($(#[$field_doc:meta])* $name:ident: $width:expr;)*) => {
         $(#[$doc])*
@@ -98,6 +105,9 @@ fields! {
     mocap_quat: 4 * m.nmocap;
     /// Zero if an equality is inactive.
     eq_active: m.equalities.len();
+    /// The sleep counters of trees, and the poses of sleeping trees and of mocap bodies, if trees may sleep.
+    tree_asleep: m.tree_asleep0.len();
+    pose_asleep: asleep_pose(m);
     /// The start time of the first counted step, s.
     start_time: 1;
     /// The slots for constraints that are added at run time. They come last, so that they can be added.
@@ -222,6 +232,16 @@ fields! {
     start_stick_friction: friction_count(m);
     /// The slot of the stick reference of each contact's pair; beyond the last without one.
     stick_slot: m.max_stick_pairs.map_or(0, |_| c.contacts);
+    /// The sleep counters during a step, and 1 for each tree that is awake, if trees may sleep.
+    tree_counter: m.tree_asleep0.len();
+    tree_awake: m.tree_asleep0.len();
+    /// 1 for each tree that may wake, then for each tree whose island is not ready to sleep.
+    tree_marked: m.tree_asleep0.len();
+    /// The lowest tree of the island of each tree, and at that place the tree of it that was visited last.
+    tree_leader: m.tree_asleep0.len();
+    tree_visited: m.tree_asleep0.len();
+    /// The poses of the last pass.
+    pass_pose: asleep_pose(m);
 }
 
 fields! {
@@ -285,6 +305,8 @@ fields! {
     stiff: c.rows;
     /// The mass matrix, dense or in the pattern of the tree.
     mass: c.mass;
+    /// 1 for each tile of H with a dof that is awake, if trees may sleep.
+    awake_tiles: if m.tree_asleep0.is_empty() { 0 } else { m.nv.div_ceil(TILE) };
     /// The factor of H, and vectors over the dofs, if workgroup memory is too small for them.
     tiles: c.tiles;
     vectors: c.vectors;
@@ -309,6 +331,8 @@ fields! {
     resets: 1;
     /// Nonzero if the next step repeats one that failed, from the initial state.
     repeats: 1;
+    /// Nonzero if all trees slept in the last pass.
+    at_rest: 1;
     /// The number of near pairs, and their indices in canonical order; the contacts of a pair replace its index.
     nnear: 1;
     near_pairs: c.pairs;

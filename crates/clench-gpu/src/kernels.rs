@@ -9,6 +9,7 @@ use crate::layout::Layout;
 use crate::precision::{Texts, words};
 use crate::solver_memory::SolverMemory;
 use crate::tables::{NONE, Tables};
+use clench_rigid::sleep::{AWAKE, READY};
 use clench_solver::Status;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -84,16 +85,18 @@ macro_rules! kernels {
 kernels! {
     /// Resets environments to the initial state.
     RESTART = "restart", Thread: "initial_state", "restart";
+    /// Wakes touched trees, and lets environments rest in which everything sleeps.
+    WAKE = "wake", Team: "team", "sleep/awake", "sleep/free", "sleep/touched";
     /// Computes poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
     POSITIONS = "positions", Team: "team", "kinematics", "com", "tree", "substitution", "chains", "wrap", "tendon",
         "outputs", "transmission", "articulated", "outer", "factor_m", "inertia";
     /// Finds near pairs.
-    BROAD_PHASE = "broad_phase", Team: "team", "broad_phase";
+    BROAD_PHASE = "broad_phase", Team: "team", "sleep/awake", "sleep/wake", "sleep/pulled", "broad_phase";
     /// Finds the contacts of near pairs.
     NARROW_PHASE = "narrow_phase", NarrowPhase: "near_pairs", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
     /// Gathers contacts.
-    CONTACTS = "contacts", Team: "team", "near_pairs", "contacts";
+    CONTACTS = "contacts", Team: "team", "near_pairs", "sleep/awake", "sleep/wake", "sleep/touching", "contacts";
     /// Computes smooth forces and the resulting acceleration.
     FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_acceleration", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "polynomial", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
@@ -102,11 +105,11 @@ kernels! {
         "orientation", "actuator_derivatives", "length_slopes", "ellipsoid", "ellipsoid_rates", "fluid_derivatives", "spring", "polynomial", "tendon_forces", "outer",
         "along", "couplings", "metric";
     /// Finds active constraints and their softness.
-    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "constraints";
+    CONSTRAINTS = "constraints", Workgroup: "group", "sleep/awake", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "constraints";
     /// Computes their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "along", "row_spring", "implicit_rows", "assembly";
     /// Solves the convex problem.
-    SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
+    SOLVE = "solve", Workgroup: "group", "sleep/awake", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
         "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "noslip_metric", "along", "couplings", "prediction", "newton", "precondition", "substitution", "cg", "descent";
     /// Spins free bodies that nothing touches, with the integrator `discrete`.
     SPIN = "spin", Team: "team", "chains", "ellipsoid", "ellipsoid_rates", "gyroscopic", "spin";
@@ -126,18 +129,20 @@ kernels! {
     SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "contact_adhesion", "wrench", "contact_sensor", "distance_sensor", "shape_data", "enclosed", "clock", "sample_times", "history", "sensor_delay", "optics", "sensors";
     /// Checks that the results of a forward pass outside a step are within limits.
     CHECK_FORWARD = "check_forward", Team: "team", "check_results", "check_forward";
+    /// Lets slow trees fall asleep.
+    FALL_ASLEEP = "fall_asleep", Team: "team", "sleep/awake", "sleep/free", "sleep/fall";
     /// Advances the state by semi-implicit Euler; also by `discrete`, whose acceleration is that of the step.
-    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "euler";
+    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "euler";
     /// Does the same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "gyroscopic", "implicit_fast";
     /// Does the same with Coriolis forces.
     IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "coriolis", "lu", "implicit";
     /// Does the same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "rk4";
 }
 
 /// The inputs of the constants before every kernel, besides the tables.
@@ -168,6 +173,8 @@ codes! {
         /// Excluded from a call by the host.
         Excluded = "EXCLUDED",
         Unfinished = "UNFINISHED",
+        /// Runs, but the current pass would repeat the last one, in which everything slept.
+        Resting = "RESTING",
     }
 }
 codes! {
@@ -246,6 +253,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
         clench_collide::SHAPE_CONSTANTS,
         clench_collide::CONVEX_CONSTANTS,
         clench_rigid::stiction::STICTION_CONSTANTS,
+        &[("COUNTER_AWAKE", AWAKE), ("COUNTER_READY", READY)],
     ];
     for (name, value) in constants.concat() {
         // Without a type, so that it suits both precisions.
@@ -336,9 +344,7 @@ mod tests {
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
     /// Codes that no kernel compares with.
-    const UNNAMED: [&str; 4] = [
-        // Kernels compare with `RUNNING` alone.
-        "EXCLUDED",
+    const UNNAMED: [&str; 3] = [
         // Only the CPU refuses large problems.
         "SOLVE_TOO_LARGE",
         // The affine law is the default case of each switch.

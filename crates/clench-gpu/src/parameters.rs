@@ -43,6 +43,7 @@ impl<S: GpuReal> GpuBatch<S> {
         envs: &[usize],
         rows: &[Vec<S>],
     ) -> Result<(), GpuError> {
+        self.end_rest();
         let count = self.count;
         let each = (size_of::<S>() * self.base.parameters.len()) as u64;
         let bytes = each * count as u64;

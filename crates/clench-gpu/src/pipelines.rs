@@ -35,8 +35,10 @@ pub(crate) struct Pipelines {
     pub gap: Pipeline,
     /// Checks the results of a forward pass outside a step.
     pub check_forward: Pipeline,
+    /// Lets trees fall asleep, if they may.
+    fall_asleep: Option<Pipeline>,
     /// The integrator: one for each forward pass of a step.
-    pub advance: Vec<Pipeline>,
+    advance: Vec<Pipeline>,
 }
 
 /// The arrays, in the order of the kernels' bindings.
@@ -97,12 +99,13 @@ impl Pipelines {
         device: &Device,
         preface: Preface,
         count: usize,
-        model: &Model,
+        (model, sleeps): (&Model, bool),
     ) -> Result<Self, GpuError> {
         let compile = |kernel: &Kernel| compile::<S>(device, &preface, count, kernel);
         let in_metric = model.integrator == Integrator::Discrete;
         let spins = in_metric && (0..model.joints.len()).any(|j| is_free_tree(model, j));
         let forward = [
+            (kernels::WAKE, sleeps),
             (kernels::POSITIONS, true),
             (kernels::BROAD_PHASE, true),
             (kernels::NARROW_PHASE, true),
@@ -132,6 +135,9 @@ impl Pipelines {
             gap: compile(&kernels::GAP)?,
             check_forward: compile(&kernels::CHECK_FORWARD)?,
             drag: drag.transpose()?,
+            fall_asleep: (sleeps.then_some(&kernels::FALL_ASLEEP))
+                .map(compile)
+                .transpose()?,
             forward,
             advance,
             preface,
@@ -141,6 +147,21 @@ impl Pipelines {
     /// Returns the kernels of requested outputs, except sensors.
     pub(crate) fn observed(&self) -> impl Iterator<Item = &Pipeline> {
         self.cameras.iter().chain(&self.body_forces)
+    }
+
+    /// Returns the kernels of a step in order.
+    pub(crate) fn step(&self) -> impl Iterator<Item = &Pipeline> {
+        let last = self.advance.len() - 1;
+        let stages = self.advance.iter().enumerate();
+        stages.flat_map(move |(stage, advance)| {
+            // Sensors measure at the start of a step; everything else is from the last forward pass.
+            let measured = self.sensors.iter().filter(move |_| stage == 0);
+            let shown = stage == last || measured.clone().count() > 0;
+            let observed = self.observed().filter(move |_| shown).chain(measured);
+            let dragged = self.drag.iter().filter(move |_| stage == 0);
+            let forward = self.forward.iter().chain(observed).chain(dragged);
+            forward.chain(&self.fall_asleep).chain([advance])
+        })
     }
 
     /// Returns the kernels of a forward pass and of all requested outputs.

@@ -48,7 +48,7 @@ impl<S: GpuReal> GpuBatch<S> {
         let limit = self.capacity.contacts;
         let slots = self.model().max_stick_pairs.unwrap_or(0);
         let fault = |&code: &u32| match Report::of(code) {
-            Some(Report::Running | Report::Excluded) => None,
+            Some(Report::Running | Report::Resting | Report::Excluded) => None,
             Some(Report::Singular) => Some(GpuFault::Singular),
             Some(Report::ContactOverflow) => Some(GpuFault::ContactOverflow { limit }),
             Some(Report::StickOverflow) => Some(GpuFault::StickOverflow { limit: slots }),
@@ -107,6 +107,11 @@ impl<S: GpuReal> GpuBatch<S> {
         for name in ["steps", "resets", "repeats"] {
             self.write_report(name, &vec![0; self.count]);
         }
+    }
+
+    /// Makes the next pass compute everything, also of environments in which everything sleeps.
+    pub(crate) fn end_rest(&self) {
+        self.write_report("at_rest", &vec![0; self.count]);
     }
 
     /// Writes a report field of all environments.

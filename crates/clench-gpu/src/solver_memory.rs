@@ -7,7 +7,7 @@ use clench_solver::ConstraintSolver;
 use std::fmt::Write;
 
 /// The rows and columns of a tile of H.
-const TILE: usize = 16;
+pub(crate) const TILE: usize = 16;
 /// The vectors over the dofs, for Newton's method and conjugate gradients.
 const NEWTON_VECTORS: usize = 7;
 const CG_VECTORS: usize = 10;

@@ -29,6 +29,8 @@ impl Tables {
                 "eq_active" => {
                     row.extend(state.eq_active.iter().map(|&on| f64::from(u8::from(on))))
                 }
+                "tree_asleep" => row.extend(&state.tree_asleep),
+                "pose_asleep" => row.extend(&state.pose_asleep),
                 _ => row.resize(row.len() + field.width, 0.0),
             }
         }
@@ -40,8 +42,9 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `history`, `plastic`,
     /// `qacc_warmstart`, `stick_references`, `stick_friction`, `ctrl`, `qfrc_applied`, `xfrc_applied` (for each body
     /// the force at its centre of mass, then the torque, world axes), `mocap_pos`, `mocap_quat`, `eq_active` (zero if
-    /// an equality is inactive), `start_time` (the time of the first of the [`steps`](Self::steps), s, from which
-    /// clock sensors count); and those of [`enable_dynamic_constraints`](Self::enable_dynamic_constraints).
+    /// an equality is inactive), `tree_asleep`, `pose_asleep` (see [`State`]), `start_time` (the time of the first of
+    /// the [`steps`](Self::steps), s, from which clock sensors count); and those of
+    /// [`enable_dynamic_constraints`](Self::enable_dynamic_constraints).
     ///
     /// # Errors
     /// Returns an error if no such field exists, the length is wrong, a number is not finite, or a position or velocity

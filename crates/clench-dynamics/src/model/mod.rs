@@ -142,7 +142,7 @@ impl Model {
     }
     /// Returns true if nothing can move a body: neither joints nor the user, who moves mocap bodies.
     #[inline(always)]
-    pub(crate) fn is_fixed(&self, body: usize) -> bool {
+    pub fn is_fixed(&self, body: usize) -> bool {
         let weld = &self.bodies[self.bodies[body].weld];
         weld.dofs.is_empty() && weld.mocap.is_none()
     }

@@ -52,8 +52,9 @@ impl Size {
         }
     }
 
+    /// Returns the number of elements in a model.
     #[inline(always)]
-    fn of(self, model: &Model) -> usize {
+    pub fn of(self, model: &Model) -> usize {
         match self {
             Size::Positions => model.nq,
             Size::Dofs => model.nv,

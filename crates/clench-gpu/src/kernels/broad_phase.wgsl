@@ -35,6 +35,12 @@ fn near_count(thread: u32, method: u32) -> u32 {
 @compute @workgroup_size(GROUP, TEAM)
 fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
     begin_in_team(id);
+    if (SLEEP) {
+        if (is_first()) {
+            wake_pulled();
+        }
+        join();
+    }
     let pairs = NPAIR + NMEASURED * words[MEASURES];
     let share = (pairs + 4u * TEAM - 1u) / (4u * TEAM) * 4u;
     let start = share * min(member, TEAM);
@@ -51,6 +57,9 @@ fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
                 next[words[PAIR_METHOD + pair + k]]++;
             }
         }
+    }
+    if (SLEEP) {
+        count = drop_sleeping(start, count, &next);
     }
     for (var method = 0u; member < TEAM && method < METHODS; method++) {
         near_counts[near_count(member, method)] = next[method];

@@ -46,10 +46,21 @@ fn add_row(position: f32, aref: f32, stiffness: f32, damping: f32, r: f32, shape
     nrow++;
 }
 
+// Returns true if a dof or tendon with dry friction is awake.
+fn is_friction_awake(source: u32) -> bool {
+    if (source < NV) {
+        return is_dof_awake(source);
+    }
+    return is_tendon_awake(source - NV);
+}
+
 fn push_friction(k: u32) {
+    let source = words[FRICTION_SOURCE + k];
+    if (SLEEP && !is_friction_awake(source)) {
+        return;
+    }
     let prm = FRICTION_PRM + FRICTION_SIZE * k;
     let soft = soften(prm + FRICTION_SOLREF, 0.0);
-    let source = words[FRICTION_SOURCE + k];
     begin_block(DRY_FRICTION, COST_HUBER, 1u, source, soft.impedance);
     let r = regularization(soft.impedance, parameter(prm + FRICTION_INVWEIGHT));
     add_row(0.0, 0.0, select(0.0, soft.stiffness, STICTION), soft.damping, r, parameter(prm + FRICTION_LOSS));
@@ -74,6 +85,9 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
 // Adds both ends.
 fn push_limits(k: u32) {
     let c = words[LIMIT_COORDINATE + k];
+    if (SLEEP && !is_coordinate_awake(c)) {
+        return;
+    }
     let prm = LIMIT_PRM + LIMIT_SIZE * k;
     let low = parameter(prm + LIMIT_LOW);
     let high = parameter(prm + LIMIT_HIGH);

@@ -1,6 +1,11 @@
 // The contacts of an environment: a pool of MAX_CONTACTS, in canonical order; and the nearest points of pairs whose
 // distance is measured.
 
+// Returns the offset of a contact in the memory of the threads.
+fn found_contact(index: u32) -> u32 {
+    return THREADS + THREAD_SIZE * (index / THREAD_CONTACTS) + FOUND_CONTACTS + CONTACT_SIZE * (index % THREAD_CONTACTS);
+}
+
 // Copies all numbers of a contact at once: a GPU waits as long for one.
 fn copy_contact(start: u32, offset: u32) {
     let first = fetch4(start);
@@ -30,11 +35,18 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
     if (member < TEAM) {
         near = reports[NNEAR * envs + env];
     }
+    if (SLEEP) {
+        let first = least_of_team(first_to_wake(near));
+        if (is_first()) {
+            wake_touching(near, first);
+        }
+        join();
+    }
     var count = 0u;
     for (var k = 0u; k < near; k++) {
         let of_pair = reports[(NEAR_PAIRS + k) * envs + env];
         let first = of_pair / PAIR_CONTACTS;
-        let start = THREADS + THREAD_SIZE * (first / THREAD_CONTACTS) + FOUND_CONTACTS + CONTACT_SIZE * (first % THREAD_CONTACTS);
+        let start = found_contact(first);
         let here = of_pair % PAIR_CONTACTS;
         if (here == 0u) {
             continue;
@@ -44,6 +56,9 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
             if (k % TEAM == member) {
                 copy_contact(start, MEASURED + CONTACT_SIZE * (pair - NPAIR));
             }
+            continue;
+        }
+        if (SLEEP && does_pair_sleep(pair)) {
             continue;
         }
         if (here > MAX_CONTACTS - count) {
@@ -59,6 +74,14 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
     }
     if (is_first()) {
         reports[NCON * envs + env] = count;
+    }
+    if (SLEEP) {
+        join();
+        if (is_first()) {
+            wake_coupled();
+        }
+        join();
+        record_pass();
     }
     end_in_team();
 }

@@ -59,7 +59,8 @@ fn start_at(round: u32) {
             put_vector(SMOOTH_AT + i, fetch(QACC_SMOOTH + i));
             put_vector(CONSTRAINT_AT + i, 0.0);
         }
-        if (round == AT_WARMSTART) {
+        // The processor solves each island alone: the acceleration of sleeping trees must not affect the choice.
+        if (round == AT_WARMSTART && !(SLEEP && !is_dof_awake(i))) {
             put_vector(QACC_AT + i, fetch_state(QACC_WARMSTART + i));
         } else if (round != REFRESH) {
             put_vector(QACC_AT + i, vector(SMOOTH_AT + i));
@@ -303,12 +304,18 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     let nrow = reports[NROW * envs + env];
     let nblock = reports[NBLOCK * envs + env];
     let inertia = copy_mass();
+    if (SLEEP && NEWTON) {
+        find_awake_tiles();
+    }
     let c = minimise(nrow, nblock, inertia);
     if (NOSLIP) {
         noslip(nrow, nblock, 1.0 / inertia);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
         put(QACC + i, vector(QACC_AT + i));
+        if (SLEEP && !is_dof_awake(i)) {
+            put(QACC + i, 0.0);
+        }
         put(QFRC_CONSTRAINT + i, vector(CONSTRAINT_AT + i) - pull_of_couplings(i, nblock));
         put(GRADIENT + i, select(vector(GRADIENT_AT + i), 0.0, c.status == SOLVE_UNCONSTRAINED));
     }

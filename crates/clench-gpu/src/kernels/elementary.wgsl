@@ -15,6 +15,11 @@ fn is_wild(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) == 0x7f800000u;
 }
 
+// Returns true if all bits of a number are zero: −0 is not blank.
+fn is_blank(x: f32) -> bool {
+    return bitcast<u32>(x) == 0u;
+}
+
 // Returns sine and cosine, by Cody and Waite's reduction to a quarter turn and the minimax polynomials of
 // `clench-math`.
 fn sin_cos(x: f32) -> vec2f {

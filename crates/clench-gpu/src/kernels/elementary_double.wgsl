@@ -11,6 +11,11 @@ fn is_wild(x: f64) -> bool {
     return (bitcast<u32>(f32(x)) & 0x7f800000u) == 0x7f800000u;
 }
 
+// Returns true if all bits of a number are zero: −0 is not blank.
+fn is_blank(x: f64) -> bool {
+    return x == 0.0 && bitcast<u32>(f32(x)) == 0u;
+}
+
 // Returns sine and cosine, by Cody and Waite's reduction to a quarter turn and minimax polynomials.
 fn sin_cos(x: f64) -> vec2<f64> {
     let quarters = round(x * 0.6366197723675814);

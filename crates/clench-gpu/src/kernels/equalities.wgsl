@@ -98,8 +98,21 @@ fn active_kind(equality: u32) -> u32 {
     return select(words[EQ_KIND + equality], EQ_STATIC, fetch_state(EQ_ACTIVE + equality) == 0.0);
 }
 
+// Returns true if an equality couples any awake object.
+fn is_equality_awake(equality: u32, kind: u32) -> bool {
+    let first = words[EQ_PAIR + 2u * equality];
+    let second = words[EQ_PAIR + 2u * equality + 1u];
+    if (kind != EQ_COUPLING) {
+        return is_either_awake(first, second);
+    }
+    return is_coordinate_awake(first) || (second != NONE && is_coordinate_awake(second));
+}
+
 fn push_equality(equality: u32) {
     let kind = active_kind(equality);
+    if (SLEEP && kind != EQ_STATIC && !is_equality_awake(equality, kind)) {
+        return;
+    }
     switch kind {
         case EQ_COUPLING: {
             push_coupling(equality, words[EQ_PRM + equality]);

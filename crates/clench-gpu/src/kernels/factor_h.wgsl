@@ -9,6 +9,23 @@ const MIN_PIVOT: f32 = EPSILON;
 // The diagonal of H in the current tile.
 var<workgroup> diagonal: array<f32, TILE>;
 
+// Finds the tiles with a dof that is awake. No block acts on sleeping dofs, and their gradient is zero: the factor omits
+// the rows and columns of all other tiles. Dofs that sleep in the remaining ones do not affect those that are awake.
+fn find_awake_tiles() {
+    for (var tile = lane; tile < NTILE; tile += GROUP) {
+        var awake: f32 = 0.0;
+        for (var i = TILE * tile; i < min(TILE * (tile + 1u), NV); i++) {
+            awake = select(awake, 1.0, is_dof_awake(i));
+        }
+        put_row(AWAKE_TILES + tile, awake);
+    }
+    join();
+}
+
+fn is_omitted(tile: u32) -> bool {
+    return SLEEP && row(AWAKE_TILES + tile) == 0.0;
+}
+
 // Returns this thread's part of a tile of M; beyond the end of M, of the identity.
 fn mass_tile(i: u32, j: u32) -> vec4f {
     var own = vec4f();
@@ -112,10 +129,16 @@ fn factor_hessian(count: u32) {
     let chunks = (count + TILE - 1u) / TILE;
     for (var j = 0u; j < bound(NTILE); j++) {
         for (var i = j; i < NTILE; i++) {
+            if (is_omitted(i) || is_omitted(j)) {
+                continue;
+            }
             var own = mass_tile(i, j);
             for (var term = 0u; term < chunks + j; term++) {
                 if (term == chunks) {
                     record_diagonal(own);
+                }
+                if (term >= chunks && is_omitted(term - chunks)) {
+                    continue;
                 }
                 stage_term(i, j, term, chunks, count);
                 own += tile_product();
@@ -138,25 +161,35 @@ fn factor_hessian(count: u32) {
 // Replaces the vector at `x` by H⁻¹ x; overwrites that at `half_way`.
 fn solve_hessian(x: u32, half_way: u32) {
     for (var j = 0u; j < bound(NTILE); j++) {
+        if (is_omitted(j)) {
+            continue;
+        }
         if (lane < TILE) {
             put_vector(half_way + TILE * j + lane, times_row(tile_at(j, j), lane, x + TILE * j));
         }
         join_vectors();
         for (var i = TILE * (j + 1u) + lane; i < TILE * NTILE; i += GROUP) {
             let tile = tile_at(i / TILE, j);
-            put_vector(x + i, vector(x + i) - times_row(tile, i % TILE, half_way + TILE * j));
+            if (!is_omitted(i / TILE)) {
+                put_vector(x + i, vector(x + i) - times_row(tile, i % TILE, half_way + TILE * j));
+            }
         }
         join_vectors();
     }
     for (var down = 0u; down < bound(NTILE); down++) {
         let j = NTILE - 1u - down;
+        if (is_omitted(j)) {
+            continue;
+        }
         if (lane < TILE) {
             put_vector(x + TILE * j + lane, times_column(tile_at(j, j), lane, half_way + TILE * j));
         }
         join_vectors();
         for (var i = lane; i < TILE * j; i += GROUP) {
             let tile = tile_at(j, i / TILE);
-            put_vector(half_way + i, vector(half_way + i) - times_column(tile, i % TILE, x + TILE * j));
+            if (!is_omitted(i / TILE)) {
+                put_vector(half_way + i, vector(half_way + i) - times_column(tile, i % TILE, x + TILE * j));
+            }
         }
         join_vectors();
     }

@@ -95,6 +95,9 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
         for (var i = member; i < bound(NV); i += TEAM) {
             put_state(QACC_WARMSTART + i, fetch(QACC + i));
         }
+        if (SLEEP) {
+            restore_sleeping();
+        }
         if (ANY_PLASTIC) {
             yield_springs(velocity, length, jacobian);
         }
@@ -174,7 +177,10 @@ fn advance_semi_implicit() {
     advance_activations(ACT_DOT, ACTUATOR_VELOCITY);
     join();
     for (var i = member; i < bound(NV); i += TEAM) {
-        let v = fetch_state(QVEL + i) + fetch(RATE + i) * TIMESTEP;
+        var v = fetch_state(QVEL + i) + fetch(RATE + i) * TIMESTEP;
+        if (SLEEP && !is_dof_awake(i)) {
+            v = 0.0;
+        }
         put_state(QVEL + i, v);
         put(RATE + i, v);
     }

@@ -21,11 +21,16 @@ fn yield_rotation(rest: u32, rotation: vec4f, limit: f32) {
     }
 }
 
+// Returns true if no sleeping tree holds a tendon.
+fn may_yield(t: u32) -> bool {
+    return words[TENDON_ROW + t] == words[TENDON_ROW + t + 1u] || is_tendon_awake(t);
+}
+
 // Lets springs yield after a step that has moved the positions along the velocity at `velocity`, from tendon lengths
 // and gradients at `length` and `jacobian` (all in work).
 fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
     for (var j = member; j < NJNT; j += TEAM) {
-        if (words[JNT_PLASTIC + j] == NONE) {
+        if (words[JNT_PLASTIC + j] == NONE || (SLEEP && !is_dof_awake(words[JNT_DOF + j]))) {
             continue;
         }
         let rest = PLASTIC + words[JNT_PLASTIC + j];
@@ -38,7 +43,7 @@ fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
         }
     }
     for (var t = member; t < NTENDON; t += TEAM) {
-        if (words[TENDON_PLASTIC + t] == NONE) {
+        if (words[TENDON_PLASTIC + t] == NONE || (SLEEP && !may_yield(t))) {
             continue;
         }
         let band = PLASTIC + words[TENDON_PLASTIC + t];

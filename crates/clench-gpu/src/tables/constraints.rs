@@ -64,7 +64,13 @@ row! {
 }
 
 impl Tables {
-    pub(super) fn friction(&mut self, m: &Model, s: &StepSettings, capacity: &mut Capacity) {
+    /// Adds dry friction. Returns its sources: dofs, then tendons.
+    pub(super) fn friction(
+        &mut self,
+        m: &Model,
+        s: &StepSettings,
+        capacity: &mut Capacity,
+    ) -> Vec<usize> {
         self.codes::<BlockKind>();
         self.codes::<Cost>();
         self.codes::<BlockField>();
@@ -100,12 +106,18 @@ impl Tables {
         self.count("NFRICTION", sources.len());
         capacity.blocks += sources.len();
         capacity.rows += sources.len();
-        // Dofs, then tendons.
-        self.words("FRICTION_SOURCE", sources);
+        self.words("FRICTION_SOURCE", sources.iter().copied());
         self.numbers("FRICTION_PRM", numbers);
+        sources
     }
 
-    pub(super) fn limits(&mut self, m: &Model, s: &StepSettings, capacity: &mut Capacity) {
+    /// Adds limits. Returns their coordinates: joints, then tendons.
+    pub(super) fn limits(
+        &mut self,
+        m: &Model,
+        s: &StepSettings,
+        capacity: &mut Capacity,
+    ) -> Vec<usize> {
         let p = &m.params;
         let on = s.flags.constraint && s.enable_joint_limit;
         let (mut coordinates, mut numbers) = (Vec::new(), Vec::new());
@@ -145,8 +157,8 @@ impl Tables {
         // Both limits of a coordinate can be active if its range is narrower than the margins.
         capacity.blocks += 2 * coordinates.len();
         capacity.rows += 2 * coordinates.len();
-        // Joints, then tendons.
-        self.words("LIMIT_COORDINATE", coordinates);
+        self.words("LIMIT_COORDINATE", coordinates.iter().copied());
         self.numbers("LIMIT_PRM", numbers);
+        coordinates
     }
 }

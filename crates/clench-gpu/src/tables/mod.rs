@@ -17,6 +17,7 @@ mod metric;
 mod rays;
 mod sensors;
 mod skins;
+mod sleep;
 mod solids;
 mod stiction;
 mod tendons;
@@ -156,8 +157,9 @@ impl Tables {
         };
         tables.flag("LONG_PATHS", capacity.articulated > 0);
         tables.equalities(model, settings, &mut capacity);
-        tables.friction(model, settings, &mut capacity);
-        tables.limits(model, settings, &mut capacity);
+        let rubbing = tables.friction(model, settings, &mut capacity);
+        let limited = tables.limits(model, settings, &mut capacity);
+        tables.sleep(model, settings, &limited, &rubbing);
         tables.pairs::<S>(model, settings, candidates, &mut capacity);
         tables.metric(model, settings, &mut capacity);
         (tables, capacity)

@@ -13,6 +13,7 @@ mod outputs;
 mod random;
 mod refusals;
 mod sizes;
+mod sleeping;
 mod slots;
 mod solver;
 mod stages;

@@ -21,8 +21,14 @@ fn model(option: &str) -> String {
 fn unsupported_features_are_refused_by_name() {
     for (text_of_model, words) in [
         (
-            model("<option><flag sleep='enable'/></option>"),
-            "flag sleep",
+            model("<option integrator='discrete'><flag sleep='enable'/></option>"),
+            "flag sleep: sleep is not supported with the integrator `discrete`",
+        ),
+        (
+            model(
+                "<option><flag sleep='enable'/></option><custom><text name='clench.stiction' data='true'/></custom>",
+            ),
+            "flag sleep: sleep is not supported with stiction",
         ),
         (
             model(
