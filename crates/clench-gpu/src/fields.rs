@@ -161,7 +161,7 @@ fields! {
     cfrc: 6 * m.nbody();
     /// Velocity derivatives of fluid forces on ellipsoids, by column.
     fluid_rates: if m.bodies.iter().any(|b| b.fluid_ellipsoids) { 36 * m.nbody() } else { 0 };
-    /// The mass matrix, in the pattern of the tree; with `discrete`, the metric, after the mass matrix itself is copied.
+    /// The mass matrix, in the pattern of the tree. With `discrete` the metric replaces it, and a copy remains.
     qm: m.tree.nnz();
     plain_mass: if c.in_metric { m.tree.nnz() } else { 0 };
     /// −h K v, the diagonal that the metric adds to M, and 1 for dofs on which a tendon or actuator term acts.

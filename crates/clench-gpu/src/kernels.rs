@@ -103,14 +103,14 @@ kernels! {
     /// Computes the metric of the integrator `discrete`, and the acceleration of smooth forces in it.
     METRIC = "metric", Team: "team", "tree", "substitution", "chains", "outputs", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
         "orientation", "actuator_derivatives", "length_slopes", "ellipsoid", "ellipsoid_rates", "fluid_derivatives", "spring", "polynomial", "tendon_forces", "outer",
-        "along", "couplings", "metric";
+        "along", "couplings", "backbone", "metric";
     /// Finds active constraints and their softness.
     CONSTRAINTS = "constraints", Workgroup: "group", "sleep/awake", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "constraints";
     /// Computes their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "along", "row_spring", "implicit_rows", "assembly";
     /// Solves the convex problem.
     SOLVE = "solve", Workgroup: "group", "sleep/awake", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
-        "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "noslip_metric", "along", "couplings", "prediction", "newton", "precondition", "substitution", "cg", "descent";
+        "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "noslip_metric", "along", "couplings", "backbone", "prediction", "newton", "precondition", "substitution", "cg", "descent";
     /// Spins free bodies that nothing touches, with the integrator `discrete`.
     SPIN = "spin", Team: "team", "chains", "ellipsoid", "ellipsoid_rates", "gyroscopic", "spin";
     /// Drags the stick references and the displacements of dry friction along, with the option `stiction`.

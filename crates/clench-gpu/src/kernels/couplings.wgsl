@@ -1,6 +1,6 @@
-// Solutions in a metric that couples dofs of different branches, by Woodbury's identity with the factor of the part that
-// has none. CPU counterparts: `clench-solver/src/metric_terms.rs`, and `couple_smooth` in `dynamics/discrete.rs`, which
-// finds the same minimum by Newton's method.
+// Solutions in a metric that couples dofs of different branches, by Woodbury's identity with the factor of the part
+// without couplings. CPU counterparts: `clench-solver/src/metric_terms.rs`, and `couple_smooth` in
+// `dynamics/discrete.rs`, which finds the same minimum by Newton's method.
 //
 // Teams and workgroups share this text and `substitution.wgsl`, with the same interface.
 

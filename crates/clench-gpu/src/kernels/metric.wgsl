@@ -1,6 +1,6 @@
-// The metric in which the integrator `discrete` solves for accelerations, M̂ = M + h B + h² K, the forces −h K v, and the
-// acceleration of all forces except constraints. CPU counterparts: `dynamics/metric.rs`, which derives them, and
-// `apply_metric` and `couple_smooth` in `dynamics/discrete.rs`.
+// The metric of the integrator `discrete`, M̂ = M + h B + h² K, the forces −h K v, and the acceleration of all forces
+// except constraints. CPU counterparts: `dynamics/metric.rs`, which derives them, and `apply_metric` and
+// `couple_smooth` in `dynamics/discrete.rs`.
 
 // The rounds of the smooth solve: the first is exact up to rounding, the others refine it if couplings are stiff.
 const EXACT_STEPS: u32 = 3u;
@@ -144,21 +144,6 @@ fn apply_metric() {
             fail(SINGULAR);
         }
     }
-}
-
-// Exchanges the matrices in QLD and BACKBONE, and the inverse pivots.
-fn exchange_backbone() {
-    for (var p = member; p < bound(NNZ); p += TEAM) {
-        let other = fetch(BACKBONE + p);
-        put(BACKBONE + p, fetch(QLD + p));
-        put(QLD + p, other);
-    }
-    for (var i = member; i < bound(NV); i += TEAM) {
-        let other = fetch(BACKBONE_INVERSE + i);
-        put(BACKBONE_INVERSE + i, fetch(QLD_INVERSE + i));
-        put(QLD_INVERSE + i, other);
-    }
-    join();
 }
 
 // Computes M̂⁻¹Jᵀ of all couplings, with rows √s jᵀ, and the factor of I + J M̂⁻¹Jᵀ.

@@ -241,7 +241,7 @@ fn noslip(nrow: u32, nblock: u32, scale: f32) {
         if (!any_friction(nblock)) {
             return;
         }
-        exchange_factors();
+        exchange_backbone();
         accelerate(nblock, false);
     }
     var cost: f32 = 0.0;
@@ -266,7 +266,7 @@ fn noslip(nrow: u32, nblock: u32, scale: f32) {
     }
     differentiate(nrow);
     if (HAS_BACKBONE) {
-        exchange_factors();
+        exchange_backbone();
         accelerate(nblock, true);
         differentiate(nrow);
     }

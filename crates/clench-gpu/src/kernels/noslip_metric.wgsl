@@ -2,21 +2,6 @@
 // the forces in the whole metric is computed after them. CPU counterparts: `clench-solver/src/noslip.rs` and
 // `metric_terms.rs`.
 
-// Exchanges the factors in QLD and BACKBONE.
-fn exchange_factors() {
-    for (var p = lane; p < NNZ; p += GROUP) {
-        let other = fetch(BACKBONE + p);
-        put(BACKBONE + p, fetch(QLD + p));
-        put(QLD + p, other);
-    }
-    for (var i = lane; i < bound(NV); i += GROUP) {
-        let other = fetch(BACKBONE_INVERSE + i);
-        put(BACKBONE_INVERSE + i, fetch(QLD_INVERSE + i));
-        put(QLD_INVERSE + i, other);
-    }
-    join();
-}
-
 // Computes the acceleration of the constraint forces, from Jᵀf in CONSTRAINT_AT, with the factor in QLD: at the end
 // `in_metric`, with the couplings and their forces.
 fn accelerate(nblock: u32, in_metric: bool) {

@@ -45,6 +45,31 @@ fn couplings_agree() {
     agree_exactly(&discrete("linkage", ""));
 }
 
+/// Tests bodies on which only a tendon acts, and springs of constraints that a step cannot resolve.
+#[test]
+fn flying_bodies_on_a_string_and_stiff_constraints_agree() {
+    let model = text(
+        "<mujoco model='kites'>
+           <option integrator='discrete' timestep='0.004' cone='elliptic'/>
+           <default><geom solref='0.003 1'/><joint solreflimit='0.002 1'/></default>
+           <worldbody>
+             <geom type='plane' size='5 5 1'/>
+             <body pos='0 0 2'><freejoint/><geom type='box' size='0.1 0.2 0.3'/><site name='a' pos='0.1 0.2 0'/></body>
+             <body pos='1 0 2'><freejoint/><geom type='box' size='0.3 0.1 0.2'/><site name='b' pos='-0.3 0 0.2'/></body>
+             <body pos='-1 0 2'><freejoint/><geom type='box' size='0.1 0.3 0.2'/></body>
+             <body pos='0 1 0.09'><freejoint/><geom size='0.1'/>
+               <body pos='0 0 0.2'><joint axis='0 1 0' limited='true' range='-10 10'/><geom type='capsule' size='0.05 0.1'/></body>
+             </body>
+           </worldbody>
+           <tendon>
+             <spatial stiffness='300' damping='5'><site site='a'/><site site='b'/></spatial>
+           </tendon>
+         </mujoco>",
+    );
+    agree(&model, 0.7);
+    agree_exactly(&model);
+}
+
 #[test]
 fn ellipsoids_in_a_medium_agree() {
     agree(&discrete("swimmers", ""), 0.7);
