@@ -52,8 +52,8 @@ struct Comparison<S: GpuReal> {
 /// The number of environments.
 const COUNT: usize = 3;
 
-/// Asserts that in each step the same trees sleep as on the processor, and that positions and outputs agree. Returns the
-/// share of trees that slept, and the number of times that any woke; `None` if there is no device.
+/// Asserts that in each step the same trees sleep as on the processor, and that positions and outputs agree. Returns
+/// the share of trees that slept, and the number of times that any woke; `None` if there is no device.
 fn sleeps_alike<S: GpuReal>(
     model: &Arc<Model>,
     outputs: &[&str],
@@ -143,7 +143,8 @@ fn disturb_nap<S: GpuReal>(env: usize, step: usize, state: &mut State<S>) {
         }
     }
     if at(420) {
-        state.qvel[27] = number(0.3);
+        // The rope becomes taut, and wakes the slide at its other end.
+        state.qvel[27] = number(3.0);
     }
     state.ctrl[0] = number(0.02 * (0.1 * step as f64).sin());
 }

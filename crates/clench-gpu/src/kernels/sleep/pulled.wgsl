@@ -1,8 +1,8 @@
 // Trees that tendons wake, and pairs that may wake trees by touch. CPU counterparts: `wake_pulled` in `sleep/wake.rs`,
 // and `contact/awake_pairs.rs`.
 //
-// The processor detects contacts again until no tree wakes. The device detects them once, for all trees that could wake:
-// those that near pairs and islands connect to awake ones.
+// The processor detects contacts again until no tree wakes. The device detects them once, for all trees that could
+// wake: those that near pairs and islands connect to awake ones.
 
 // Wakes trees by tendons at a limit or with dry friction that connect them to others.
 fn wake_pulled() {
