@@ -13,10 +13,20 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// The compute tests, of `clench-gpu` and of the program, and the rendering tests.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "videos"];
-/// Tests of `device` that compile their own kernels, or those for any model in double precision, and run them a few
-/// times. The others share the kernels for any model in single precision, and run them for longer than Mesa's software
-/// device takes to optimize them. It compiles on one core per program, so both parts run in parallel.
-const PART: [&str; 4] = ["batch::", "outputs::", "double::", "random::"];
+/// Two groups of tests of `device` that compile their own kernels, or those for any model in double precision, and run
+/// them a few times. The others share the kernels for any model in single precision, and run them for longer than
+/// Mesa's software device takes to optimize them. It compiles on one core per program, so two programs run in parallel.
+const BRIEF: [&[&str]; 2] = [
+    &["batch::", "outputs::", "double::", "random::"],
+    &[
+        "autoreset::",
+        "discrete::",
+        "sleeping::",
+        "slots::",
+        "stiction::",
+        "touch::",
+    ],
+];
 /// The number of random models that are written for the tests.
 const RANDOM_MODELS: usize = 200;
 /// The number of random models of a soak.
@@ -30,20 +40,24 @@ const SEED_DISTANCE: u64 = 1_000_000;
 /// Returns an error if a test fails.
 pub(crate) fn test(profile: Profile) -> Result<(), String> {
     write_random_models(1, RANDOM_MODELS)?;
-    let mut part = computing(profile, &COMPUTING[..1])?;
-    part.arg("--").args(PART);
-    part.env("GALLIVM_PERF", "nopt");
+    let brief = |names: &[&str]| -> Result<Command, String> {
+        let mut part = computing(profile, &COMPUTING[..1])?;
+        part.arg("--").args(names);
+        part.env("GALLIVM_PERF", "nopt");
+        Ok(part)
+    };
+    let [first, second] = [brief(BRIEF[0])?, brief(BRIEF[1])?];
     // The remaining tests, and those of the program.
     let mut rest = computing(profile, &COMPUTING)?;
     rest.arg("--");
-    for name in PART {
+    for name in BRIEF.concat() {
         rest.args(["--skip", name]);
     }
     thread::scope(|scope| {
-        let other = scope.spawn(|| run(part));
-        let rest = run(rest);
-        let part = other.join();
-        rest.and(part.unwrap_or_else(|_| Err("a part of the tests panicked".into())))
+        let other = scope.spawn(|| run(first));
+        let rest = run(rest).and_then(|()| run(second));
+        let first = other.join();
+        rest.and(first.unwrap_or_else(|_| Err("a part of the tests panicked".into())))
     })?;
     run(tests(profile, &DRAWING))
 }
