@@ -268,6 +268,5 @@ fn noslip(nrow: u32, nblock: u32, scale: f32) {
     if (HAS_BACKBONE) {
         exchange_backbone();
         accelerate(nblock, true);
-        differentiate(nrow);
     }
 }

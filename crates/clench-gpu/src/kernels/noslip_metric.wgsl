@@ -3,7 +3,7 @@
 // `metric_terms.rs`.
 
 // Computes the acceleration of the constraint forces, from Jᵀf in CONSTRAINT_AT, with the factor in QLD: at the end
-// `in_metric`, with the couplings and their forces.
+// `in_metric`, with the couplings. Nothing reads the forces of these afterwards.
 fn accelerate(nblock: u32, in_metric: bool) {
     for (var i = lane; i < bound(NV); i += GROUP) {
         put_vector(QACC_AT + i, vector(CONSTRAINT_AT + i) - pull_of_couplings(i, nblock));
@@ -17,14 +17,7 @@ fn accelerate(nblock: u32, in_metric: bool) {
     for (var i = lane; i < bound(NV); i += GROUP) {
         put_vector(QACC_AT + i, vector(QACC_AT + i) + vector(SMOOTH_AT + i));
     }
-    for (var b = lane; in_metric && b < nblock; b += GROUP) {
-        if (block(b, BLOCK_KIND) == METRIC_TERM) {
-            let a = block(b, BLOCK_ROW);
-            put_row(FORCE + a, -fetch(COUPLING_PULL + words[ALONG_COUPLING + block(b, BLOCK_SOURCE)]) * sqrt(row(D + a)));
-        }
-    }
     join_vectors();
-    join();
 }
 
 // Returns true if any block that acts has friction.

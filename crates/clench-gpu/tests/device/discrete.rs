@@ -53,14 +53,14 @@ fn flying_bodies_on_a_string_and_stiff_constraints_agree() {
     let model = text(
         "<mujoco model='kites'>
            <option integrator='discrete' timestep='0.004' cone='elliptic'/>
-           <default><geom solref='0.003 1'/><joint solreflimit='0.002 1'/></default>
+           <default><geom solref='0.003 1'/><joint solreflimit='0.002 1' solimplimit='0.9999 0.9999 0.001'/></default>
            <worldbody>
              <geom type='plane' size='5 5 1'/>
              <body pos='0 0 2'><freejoint/><geom type='box' size='0.1 0.2 0.3'/><site name='a' pos='0.1 0.2 0'/></body>
              <body pos='1 0 2'><freejoint/><geom type='box' size='0.3 0.1 0.2'/><site name='b' pos='-0.3 0 0.2'/></body>
              <body pos='-1 0 2'><freejoint/><geom type='box' size='0.1 0.3 0.2'/></body>
              <body pos='0 1 0.09'><freejoint/><geom size='0.1'/>
-               <body pos='0 0 0.2'><joint axis='0 1 0' limited='true' range='-10 10'/><geom type='capsule' size='0.05 0.1'/></body>
+               <body pos='0 0 0.2'><joint axis='0 1 0' limited='true' range='-10 10' margin='0.2'/><geom type='capsule' size='0.05 0.1'/></body>
              </body>
            </worldbody>
            <tendon>
