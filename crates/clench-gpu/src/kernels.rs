@@ -96,7 +96,7 @@ kernels! {
     NARROW_PHASE = "narrow_phase", NarrowPhase: "near_pairs", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
     /// Gathers contacts.
-    CONTACTS = "contacts", Team: "team", "near_pairs", "sleep/awake", "sleep/wake", "sleep/touching", "contacts";
+    CONTACTS = "contacts", Team: "team", "near_pairs", "slots", "sleep/awake", "sleep/wake", "sleep/touching", "contacts";
     /// Computes smooth forces and the resulting acceleration.
     FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_acceleration", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "polynomial", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
@@ -105,9 +105,9 @@ kernels! {
         "orientation", "actuator_derivatives", "length_slopes", "ellipsoid", "ellipsoid_rates", "fluid_derivatives", "spring", "polynomial", "tendon_forces", "outer",
         "along", "couplings", "backbone", "metric";
     /// Finds active constraints and their softness.
-    CONSTRAINTS = "constraints", Workgroup: "group", "sleep/awake", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "constraints";
+    CONSTRAINTS = "constraints", Workgroup: "group", "sleep/awake", "softness", "chains", "coordinate", "slots", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "constraints";
     /// Computes their Jacobians.
-    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "along", "row_spring", "implicit_rows", "assembly";
+    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "slots", "anchor_frames", "softness", "exact", "along", "row_spring", "implicit_rows", "assembly";
     /// Solves the convex problem.
     SOLVE = "solve", Workgroup: "group", "sleep/awake", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
         "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "noslip_metric", "along", "couplings", "backbone", "prediction", "newton", "precondition", "substitution", "cg", "descent";
@@ -120,7 +120,7 @@ kernels! {
     /// Computes camera poses, on request.
     CAMERAS = "cameras", Thread: "cameras";
     /// Computes accelerations of bodies, forces between them and the energy, on request.
-    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "polynomial", "tendon_forces", "wrap", "tendon_acceleration", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "slots", "anchor_frames", "polynomial", "tendon_forces", "wrap", "tendon_acceleration", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
     /// Traces the rays of sensors, on request.
     RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
     /// Reads skins, on request.
@@ -130,7 +130,7 @@ kernels! {
     /// Checks that the results of a forward pass outside a step are within limits.
     CHECK_FORWARD = "check_forward", Team: "team", "check_results", "check_forward";
     /// Lets slow trees fall asleep.
-    FALL_ASLEEP = "fall_asleep", Team: "team", "sleep/awake", "sleep/free", "sleep/fall";
+    FALL_ASLEEP = "fall_asleep", Team: "team", "slots", "sleep/awake", "sleep/free", "sleep/fall";
     /// Advances the state by semi-implicit Euler; also by `discrete`, whose acceleration is that of the step.
     EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "euler";
     /// Does the same, implicit in velocity derivatives.

@@ -2,7 +2,7 @@
 //! their rows, and kernels that read them.
 
 use crate::batch::{GpuBatch, check_memory, in_memory};
-use crate::error::{GpuError, Refusal};
+use crate::error::GpuError;
 use crate::kernel_options::KernelOptions;
 use crate::pipelines::Pipelines;
 use crate::plan::Plan;
@@ -17,19 +17,11 @@ impl<S: GpuReal> GpuBatch<S> {
     /// state can then be written, and adding or removing a constraint compiles nothing. Repeated calls have no effect.
     ///
     /// # Errors
-    /// Returns an error if trees may sleep, if memory is too small, or if the device refuses a kernel. The batch does
-    /// not change then.
+    /// Returns an error if memory is too small, or if the device refuses a kernel. The batch does not change then.
     pub fn enable_dynamic_constraints(&mut self) -> Result<(), GpuError> {
         let slots = self.model.max_dynamic_constraints;
         if self.has_slots() || slots == 0 {
             return Ok(());
-        }
-        let sleeps = self.settings.flags.sleep;
-        if sleeps {
-            return Err(GpuError::Unsupported(vec![Refusal {
-                element: "flag sleep".to_owned(),
-                reason: "constraints cannot be added at run time with sleep yet",
-            }]));
         }
         let device = &*self.device;
         if slots > MAX_SLOTS {
@@ -54,7 +46,7 @@ impl<S: GpuReal> GpuBatch<S> {
             arrays.layout = device.constants("layout", &plan.preface.layout.bytes::<S>());
             arrays
         })?;
-        let features = (&*self.model, sleeps);
+        let features = (&*self.model, self.settings.flags.sleep);
         let mut pipelines = Pipelines::new::<S>(device, plan.preface, self.count, features)?;
         pipelines.observe_as::<S>(&self.pipelines, device, self.count)?;
         // The slots come last in the state, and its other fields stay where they are.

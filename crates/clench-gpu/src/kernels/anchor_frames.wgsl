@@ -1,26 +1,5 @@
 // Anchor frames of connects and welds on two bodies. CPU counterparts: `constraint/anchor_frames.rs`, `dynamic.rs`,
 // `connect.rs` and `weld.rs`, which derive the formulas.
-//
-// Equalities from FIRST_SLOT on were added at run time: their bodies and frames are in a slot of the state.
-
-fn is_in_slot(equality: u32) -> bool {
-    return ANY_SLOTS && equality >= FIRST_SLOT;
-}
-
-// Returns a number of the state that is an index or a code; NONE if it is not a whole number.
-fn whole_number(x: f32) -> u32 {
-    let number = u32(x);
-    return select(NONE, number, f32(number) == x);
-}
-
-// Returns the first or second body of a connect or weld.
-fn anchor_body(equality: u32, side: u32) -> u32 {
-    if (is_in_slot(equality)) {
-        let bodies = select(DYNAMIC_BODY2, DYNAMIC_BODY1, side == 0u);
-        return whole_number(fetch_state(bodies + equality - FIRST_SLOT));
-    }
-    return words[EQ_PAIR + 2u * equality + side];
-}
 
 // Returns the parameters of an equality; those of a slot lack its frames.
 fn equality_parameters(equality: u32) -> u32 {

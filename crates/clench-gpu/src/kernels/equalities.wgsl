@@ -1,5 +1,5 @@
 // Equalities as blocks: connects, welds, and couplings of joints or tendons. CPU counterparts: `constraint/connect.rs`,
-// `weld.rs` and `joint_equality.rs`; of slots, `constraint/dynamic.rs` and `state/slots.rs`.
+// `weld.rs` and `joint_equality.rs`; of slots, `constraint/dynamic.rs`.
 
 fn push_coupling(equality: u32, prm: u32) {
     let follower = words[EQ_PAIR + 2u * equality];
@@ -69,42 +69,25 @@ fn push_frames(equality: u32, is_weld: bool) {
     }
 }
 
-// Returns the kind of the constraint in a slot: static too if the slot is empty or does not name two bodies.
-fn kind_in_slot(equality: u32) -> u32 {
-    let kind = whole_number(fetch_state(DYNAMIC_KIND + equality - FIRST_SLOT));
-    let first = anchor_body(equality, 0u);
-    let second = anchor_body(equality, 1u);
-    if (max(first, second) >= NBODY || first == second || (move_together(first, 0u) && move_together(second, 0u))) {
-        return EQ_STATIC;
-    }
-    switch kind {
-        case SLOT_CONNECT: {
-            return EQ_CONNECT;
-        }
-        case SLOT_WELD: {
-            return EQ_WELD;
-        }
-        default: {
-            return EQ_STATIC;
-        }
-    }
-}
-
-// Returns the kind of an equality; that of an inactive one is static.
+// Returns the kind of an equality; that of an inactive one is static, and of one in a slot that ties static bodies.
 fn active_kind(equality: u32) -> u32 {
     if (is_in_slot(equality)) {
-        return kind_in_slot(equality);
+        let kind = kind_in_slot(equality - FIRST_SLOT);
+        if (kind != EQ_STATIC && move_together(anchor_body(equality, 0u), 0u) && move_together(anchor_body(equality, 1u), 0u)) {
+            return EQ_STATIC;
+        }
+        return kind;
     }
     return select(words[EQ_KIND + equality], EQ_STATIC, fetch_state(EQ_ACTIVE + equality) == 0.0);
 }
 
 // Returns true if an equality couples any awake object.
 fn is_equality_awake(equality: u32, kind: u32) -> bool {
+    if (kind != EQ_COUPLING) {
+        return is_either_awake(anchor_body(equality, 0u), anchor_body(equality, 1u));
+    }
     let first = words[EQ_PAIR + 2u * equality];
     let second = words[EQ_PAIR + 2u * equality + 1u];
-    if (kind != EQ_COUPLING) {
-        return is_either_awake(first, second);
-    }
     return is_coordinate_awake(first) || (second != NONE && is_coordinate_awake(second));
 }
 

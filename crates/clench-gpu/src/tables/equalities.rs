@@ -96,12 +96,15 @@ impl Tables {
         let start = self.numbers.len();
         self.words("EQ_PRM", places.into_iter().map(|place| start + place));
         self.numbers("EQ_NUMBERS", numbers);
-        self.slots(m, count, if on { capacity.slots } else { 0 }, capacity);
+        self.slots(m, count, on, capacity);
     }
 
-    /// Adds slots for constraints that are added at run time; as equalities, they follow the first `count`.
-    fn slots(&mut self, m: &Model, count: usize, slots: usize, capacity: &mut Capacity) {
-        self.fixed_flag("ANY_SLOTS", slots > 0);
+    /// Adds slots for constraints that are added at run time; as equalities, they follow the first `count`. Those that
+    /// do not act wake trees.
+    fn slots(&mut self, m: &Model, count: usize, act: bool, capacity: &mut Capacity) {
+        self.fixed_flag("ANY_SLOTS", capacity.slots > 0);
+        self.count("NSLOT", capacity.slots);
+        let slots = if act { capacity.slots } else { 0 };
         self.constant("SLOT_CONNECT", CONNECT as usize);
         self.constant("SLOT_WELD", WELD as usize);
         self.count("FIRST_SLOT", count);

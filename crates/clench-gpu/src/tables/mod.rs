@@ -159,7 +159,7 @@ impl Tables {
         tables.equalities(model, settings, &mut capacity);
         let rubbing = tables.friction(model, settings, &mut capacity);
         let limited = tables.limits(model, settings, &mut capacity);
-        tables.sleep(model, settings, &limited, &rubbing);
+        tables.sleep(model, settings, (&limited, &rubbing), capacity.slots);
         tables.pairs::<S>(model, settings, candidates, &mut capacity);
         tables.metric(model, settings, &mut capacity);
         (tables, capacity)

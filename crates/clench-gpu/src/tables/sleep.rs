@@ -43,19 +43,19 @@ row! {
 
 impl Tables {
     /// Adds the trees, and the tree of each body and dof. `limited` are the coordinates with limits, `rubbing` the
-    /// sources of dry friction.
+    /// sources of dry friction, `slots` the number of slots.
     pub(super) fn sleep(
         &mut self,
         m: &Model,
         s: &StepSettings,
-        limited: &[usize],
-        rubbing: &[usize],
+        (limited, rubbing): (&[usize], &[usize]),
+        slots: usize,
     ) {
         let sleeps = s.flags.sleep;
         let trees = if sleeps { &m.trees[..] } else { &[] };
         self.fixed_flag("SLEEP", sleeps);
         // Actuators have activations, sensors and controls pass, and equalities may wake trees in every step.
-        let bare = m.actuators.is_empty() && m.equalities.is_empty();
+        let bare = m.actuators.is_empty() && m.equalities.is_empty() && slots == 0;
         let rests = bare && m.nhistory == 0 && m.nplastic == 0;
         self.fixed_flag("MAY_REST", sleeps && rests);
         self.flag("ISLANDS", s.solver.islands != Switch::Off);

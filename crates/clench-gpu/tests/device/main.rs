@@ -13,6 +13,7 @@ mod outputs;
 mod random;
 mod refusals;
 mod sizes;
+mod sleep_combined;
 mod sleeping;
 mod slots;
 mod solver;

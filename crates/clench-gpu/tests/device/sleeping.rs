@@ -11,20 +11,23 @@ use std::sync::Arc;
 /// Changes a state before a step, given the number of its environment.
 type Disturb<S> = fn(usize, usize, &mut State<S>);
 
-/// Returns a batch, or `None` if the test is skipped for want of a device of this precision.
-fn batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<Batch<S>> {
-    let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
-    if wish == "skip" {
-        return None;
-    }
-    let options = BatchOptions {
+pub fn options() -> BatchOptions {
+    BatchOptions {
         options: RigidOptions {
             max_contacts: Some(MaxContacts::Limit(60)),
             ..RigidOptions::default()
         },
         ..BatchOptions::default()
-    };
-    match clench_gpu::batch(model.clone(), count, options, None) {
+    }
+}
+
+/// Returns a batch, or `None` if the test is skipped for want of a device of this precision.
+pub fn batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<Batch<S>> {
+    let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
+    if wish == "skip" {
+        return None;
+    }
+    match clench_gpu::batch(model.clone(), count, options(), None) {
         Ok(batch) => Some(batch),
         Err(GpuError::NoDoublePrecision { .. }) => None,
         Err(GpuError::NoDevice) if wish != "require" => None,
@@ -50,7 +53,7 @@ struct Comparison<S: GpuReal> {
 }
 
 /// The number of environments.
-const COUNT: usize = 3;
+pub const COUNT: usize = 3;
 
 /// Asserts that in each step the same trees sleep as on the processor, and that positions and outputs agree. Returns
 /// the share of trees that slept, and the number of times that any woke; `None` if there is no device.
@@ -108,7 +111,7 @@ fn sleeps_alike<S: GpuReal>(
 }
 
 /// Returns the largest difference, relative to the largest number or 1: accelerations of bodies at rest are near zero.
-fn apart<S: GpuReal>(found: &[S], expected: &[S]) -> f64 {
+pub fn apart<S: GpuReal>(found: &[S], expected: &[S]) -> f64 {
     let with_one = |x: &[S]| Vec::from_iter(x.iter().map(|x| x.to_f64()).chain([1.0]));
     difference(&with_one(found), &with_one(expected))
 }

@@ -90,7 +90,7 @@ fn unite_block(b: u32) {
     let source = block(b, BLOCK_SOURCE);
     switch block(b, BLOCK_KIND) {
         case FRAMES: {
-            unite_bodies(words[EQ_PAIR + 2u * source], words[EQ_PAIR + 2u * source + 1u]);
+            unite_bodies(anchor_body(source, 0u), anchor_body(source, 1u));
         }
         case COUPLING: {
             unite_coordinate(unite_coordinate(NONE, words[EQ_PAIR + 2u * source]), words[EQ_PAIR + 2u * source + 1u]);

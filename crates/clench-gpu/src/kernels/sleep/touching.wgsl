@@ -77,14 +77,31 @@ fn wake_couple(one: u32, other: u32) -> bool {
     return true;
 }
 
-// Wakes trees that an active equality couples to an awake tree, to a mocap body, or to a tree that sleeps in another
-// island.
+// Wakes the trees that slots tie. A fixed body wakes nothing.
+fn wake_tied() {
+    for (var slot = 0u; slot < NSLOT; slot++) {
+        if (kind_in_slot(slot) == EQ_STATIC) {
+            continue;
+        }
+        let first = words[BODY_TREE + body_in_slot(slot, 0u)];
+        let second = words[BODY_TREE + body_in_slot(slot, 1u)];
+        if (first != NTREE && second != NTREE) {
+            wake_couple(first, second);
+        }
+    }
+}
+
+// Wakes trees that an active equality, or a constraint in a slot, couples to an awake tree, to a mocap body, or to a
+// tree that sleeps in another island.
 fn wake_coupled() {
     for (var k = 0u; k < NCOUPLE; k++) {
         let couple = COUPLES + COUPLE_SIZE * k;
         if (fetch_state(EQ_ACTIVE + words[couple + COUPLE_EQUALITY]) != 0.0) {
             wake_couple(words[couple + COUPLE_FIRST], words[couple + COUPLE_SECOND]);
         }
+    }
+    if (ANY_SLOTS) {
+        wake_tied();
     }
     update_awake();
 }
