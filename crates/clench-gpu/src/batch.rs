@@ -89,7 +89,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Returns an error if there is no device, the model is unsupported, an option is out of range, or memory is too
     /// small.
     pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
-        let settings = StepSettings::new::<S>(&model, options.options)?;
+        let settings = StepSettings::supported::<S>(&model, options.options)?;
         let model = settings.adapt(model);
         let collide = settings.flags.constraint && settings.flags.contact;
         let pairs = if collide {

@@ -3,7 +3,7 @@
 use crate::error::{GpuError, Refusal};
 use crate::methods::points_of_pair;
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{Integrator, Model};
+use clench_rigid::model::Model;
 use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
 use clench_solver::ConstraintSolver;
@@ -34,10 +34,6 @@ rules! {
         let coulomb = s.settings.contact_model == ContactModel::Coulomb;
         let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
         (coulomb && cg).then(|| "option contact_model".to_owned())
-    };
-    "sleep is not supported with the integrator `discrete` yet": |s| {
-        let discrete = s.model.integrator == Integrator::Discrete;
-        (s.settings.flags.sleep && discrete).then(|| "flag sleep".to_owned())
     };
     "sleep is not supported with stiction yet": |s| {
         (s.settings.flags.sleep && s.settings.stiction).then(|| "flag sleep".to_owned())

@@ -1,7 +1,6 @@
 //! Errors and faults of environments on a graphics device, with remedies.
 
 use clench_rigid::SimError;
-use clench_rigid::options::OptionError;
 use std::fmt;
 
 /// A feature of a model that the device does not support yet.
@@ -99,15 +98,12 @@ pub enum GpuError {
         /// The number of slots.
         slots: usize,
     },
-    /// An option is out of range.
-    #[error(transparent)]
-    Option(#[from] OptionError),
     /// The parameters would need different kernels.
     #[error(
         "these parameters cannot differ between environments on a graphics device: its kernels are compiled for them"
     )]
     Structure,
-    /// The batch on the host refused a request.
+    /// The processor refuses the model, an option or a request.
     #[error(transparent)]
     Sim(#[from] SimError),
     /// The number of values is wrong.

@@ -105,14 +105,14 @@ kernels! {
         "orientation", "actuator_derivatives", "length_slopes", "ellipsoid", "ellipsoid_rates", "fluid_derivatives", "spring", "polynomial", "tendon_forces", "outer",
         "along", "couplings", "backbone", "metric";
     /// Finds active constraints and their softness.
-    CONSTRAINTS = "constraints", Workgroup: "group", "sleep/awake", "softness", "chains", "coordinate", "slots", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "constraints";
+    CONSTRAINTS = "constraints", Workgroup: "group", "sleep/awake", "softness", "chains", "coordinate", "slots", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "along", "constraints";
     /// Computes their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "slots", "anchor_frames", "softness", "exact", "along", "row_spring", "implicit_rows", "assembly";
     /// Solves the convex problem.
     SOLVE = "solve", Workgroup: "group", "sleep/awake", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
         "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "noslip_metric", "along", "couplings", "backbone", "prediction", "newton", "precondition", "substitution", "cg", "descent";
     /// Spins free bodies that nothing touches, with the integrator `discrete`.
-    SPIN = "spin", Team: "team", "chains", "ellipsoid", "ellipsoid_rates", "gyroscopic", "spin";
+    SPIN = "spin", Team: "team", "sleep/awake", "chains", "ellipsoid", "ellipsoid_rates", "gyroscopic", "spin";
     /// Drags the stick references and the displacements of dry friction along, with the option `stiction`.
     DRAG = "drag", Workgroup: "group", "surface", "row_spring", "stiction/pairs", "stiction/friction", "stiction/return_mapping", "stiction/drag";
     /// Computes the duality gap of the solve, on request.

@@ -186,9 +186,18 @@ fn push_contact(contact: u32) {
     push_tangents(contact, dim, friction, r, vec2f(soft.stiffness, soft.damping));
 }
 
-// Adds the couplings of the metric, ½ s (J a − J a_s)², as the last blocks.
+// Returns true if a coupling acts on an awake dof. It acts on one tree, or only on trees that never sleep.
+fn is_coupling_awake(k: u32) -> bool {
+    let arms = arms_along(words[COUPLING_ALONG + k]);
+    return arms.start < arms.end && is_dof_awake(words[arms.dofs + arms.start]);
+}
+
+// Adds the couplings of the metric, ½ s (J a − J a_s)², as the last blocks. Those of sleeping trees have no force.
 fn push_couplings() {
     for (var k = 0u; k < NCOUPLING; k++) {
+        if (SLEEP && !is_coupling_awake(k)) {
+            continue;
+        }
         let scale = fetch(ALONG_SCALE + words[COUPLING_ALONG + k]);
         if (scale > 0.0) {
             begin_block(METRIC_TERM, COST_QUADRATIC, 1u, words[COUPLING_ALONG + k], scale);

@@ -1,5 +1,6 @@
-// Accelerations of free bodies that are trees of their own, with their gyroscopic forces, if neither constraints nor
-// terms of the metric act on them: one team per environment. CPU counterpart: `spin_freely` in `dynamics/discrete.rs`.
+// Accelerations of awake free bodies that are trees of their own, with their gyroscopic forces, if neither constraints
+// nor terms of the metric act on them: one team per environment. CPU counterpart: `spin_freely` in
+// `dynamics/discrete.rs`.
 
 // Returns true if a row that acts, or a term of the metric, involves dof `i`.
 fn is_touched(i: u32) -> bool {
@@ -25,6 +26,9 @@ fn spin(@builtin(global_invocation_id) id: vec3u) {
     join();
     for (var k = member; k < NFREE_TREE; k += TEAM) {
         let dof = words[JNT_DOF + words[FREE_TREE_JNT + k]];
+        if (SLEEP && !is_dof_awake(dof)) {
+            continue;
+        }
         var touched = false;
         for (var r = 0u; r < bound(6u) && !touched; r++) {
             touched = is_touched(dof + r);

@@ -2,6 +2,8 @@
 
 use crate::common::text;
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
+use clench_rigid::options::RigidOptions;
+use clench_solver::Switch;
 
 /// Returns a model of a pendulum with an option.
 fn model(option: &str) -> String {
@@ -20,10 +22,6 @@ fn model(option: &str) -> String {
 #[test]
 fn unsupported_features_are_refused_by_name() {
     for (text_of_model, words) in [
-        (
-            model("<option integrator='discrete'><flag sleep='enable'/></option>"),
-            "flag sleep: sleep is not supported with the integrator `discrete`",
-        ),
         (
             model(
                 "<option><flag sleep='enable'/></option><custom><text name='clench.stiction' data='true'/></custom>",
@@ -47,6 +45,19 @@ fn unsupported_features_are_refused_by_name() {
         let said = error.to_string();
         assert!(said.contains(words), "{said} does not say {words}");
     }
+}
+
+#[test]
+fn refusals_of_the_processor_hold() {
+    let option = "<option integrator='discrete'><flag sleep='enable'/></option>";
+    let options = GpuOptions {
+        options: RigidOptions::new().islands(Switch::Off),
+        ..GpuOptions::default()
+    };
+    let error =
+        GpuBatch::<f32>::new(text(&model(option)), 1, options).expect_err("trees have no islands");
+    let said = error.to_string();
+    assert!(said.contains("sleep without islands"), "{said}");
 }
 
 #[test]

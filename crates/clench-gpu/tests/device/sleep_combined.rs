@@ -1,9 +1,9 @@
 //! Sleep together with other features of a step: the same trees sleep and wake as on the processor.
 
-use crate::common::text;
-use crate::sleeping::{COUNT, apart, batch, options};
+use crate::common::{own, text};
+use crate::sleeping::{COUNT, Comparison, apart, batch, disturb_nap, options, sleeps_alike};
 use clench_rigid::model::Model;
-use clench_rigid::{Batch, DynamicConstraint};
+use clench_rigid::{Batch, DynamicConstraint, State};
 use std::sync::Arc;
 
 /// Boxes that lie, a ball that sleeps in mid air, and a mocap body.
@@ -103,5 +103,65 @@ fn constraints_added_at_run_time_wake_trees_as_on_the_processor() {
             (0.3..0.9).contains(&share) && wakes >= 10,
             "{flag}: {share} {wakes}"
         );
+    }
+}
+
+/// Returns `nap` with attributes of `<option>`, a tree in which a tendon couples two branches, and the measured
+/// acceleration of the ball.
+fn forked_nap(option: &str) -> Arc<Model> {
+    let fork = "<body name='fork' pos='-2 2 1'>
+          <joint axis='0 1 0' damping='0.2'/>
+          <geom type='capsule' fromto='0 0 0 0 0 -0.2' size='0.02'/>
+          <body pos='0 -0.1 -0.2'>
+            <joint name='one' axis='0 1 0' damping='0.05'/>
+            <geom type='capsule' fromto='0 0 0 0.02 0 -0.2' size='0.02'/>
+          </body>
+          <body pos='0 0.1 -0.2'>
+            <joint name='other' axis='0 1 0' damping='0.05'/>
+            <geom type='capsule' fromto='0 0 0 0 0 -0.2' size='0.02'/>
+          </body>
+        </body></worldbody>";
+    let tendon = "<tendon><fixed stiffness='20' damping='1'>
+          <joint joint='one' coef='1'/><joint joint='other' coef='-1'/></fixed>";
+    let sensor = "<sensor><framelinacc objtype='body' objname='ball'/></sensor></mujoco>";
+    let file = own("nap")
+        .replacen("<option ", &format!("<option {option} "), 1)
+        .replacen("</worldbody>", fork, 1)
+        .replacen("<tendon>", tendon, 1)
+        .replacen("sleep=\"init\"", "sleep=\"init\" name=\"ball\"", 1)
+        .replacen("</mujoco>", sensor, 1);
+    text(&file)
+}
+
+fn disturb_fork(env: usize, step: usize, state: &mut State<f64>) {
+    disturb_nap(env, step, state);
+    if step == 400 + 3 * env
+        && let Some(last) = state.qvel.last_mut()
+    {
+        *last = 0.2;
+    }
+}
+
+/// Free bodies that sleep in mid air do not spin, and terms of the metric act on awake trees.
+#[test]
+fn trees_sleep_with_the_integrator_discrete_as_on_the_processor() {
+    let comparison = Comparison::<f64> {
+        steps: 600,
+        tolerance: 1e-9,
+        from_same: false,
+        disturb: disturb_fork,
+    };
+    let outputs = ["sensordata", "qacc", "qfrc_constraint", "contact_count"];
+    for option in [
+        "",
+        "cone='elliptic' noslip_iterations='3' noslip_tolerance='0'",
+    ] {
+        let model = forked_nap(&format!("integrator='discrete' {option}"));
+        if let Some((asleep, wakes)) = sleeps_alike(&model, &outputs, &comparison) {
+            assert!(
+                (0.2..0.9).contains(&asleep) && wakes > 20,
+                "{asleep} {wakes}"
+            );
+        }
     }
 }

@@ -9,7 +9,7 @@ use clench_rigid::{Batch, BatchOptions, Sim, State};
 use std::sync::Arc;
 
 /// Changes a state before a step, given the number of its environment.
-type Disturb<S> = fn(usize, usize, &mut State<S>);
+pub type Disturb<S> = fn(usize, usize, &mut State<S>);
 
 pub fn options() -> BatchOptions {
     BatchOptions {
@@ -43,13 +43,13 @@ fn counters<S: GpuReal>(batch: &Batch<S>, env: usize, sim: &Sim<S>) -> [Vec<i32>
 }
 
 /// A comparison with the processor.
-struct Comparison<S: GpuReal> {
-    steps: usize,
+pub struct Comparison<S: GpuReal> {
+    pub steps: usize,
     /// The largest difference of positions; outputs may differ by ten times as much.
-    tolerance: f64,
+    pub tolerance: f64,
     /// True if each step starts from the processor's state.
-    from_same: bool,
-    disturb: Disturb<S>,
+    pub from_same: bool,
+    pub disturb: Disturb<S>,
 }
 
 /// The number of environments.
@@ -57,7 +57,7 @@ pub const COUNT: usize = 3;
 
 /// Asserts that in each step the same trees sleep as on the processor, and that positions and outputs agree. Returns
 /// the share of trees that slept, and the number of times that any woke; `None` if there is no device.
-fn sleeps_alike<S: GpuReal>(
+pub fn sleeps_alike<S: GpuReal>(
     model: &Arc<Model>,
     outputs: &[&str],
     comparison: &Comparison<S>,
@@ -117,7 +117,7 @@ pub fn apart<S: GpuReal>(found: &[S], expected: &[S]) -> f64 {
 }
 
 /// Wakes trees of `nap` in many ways, at times that differ between environments.
-fn disturb_nap<S: GpuReal>(env: usize, step: usize, state: &mut State<S>) {
+pub fn disturb_nap<S: GpuReal>(env: usize, step: usize, state: &mut State<S>) {
     let number = |x: f64| S::new(x);
     let at = |time: usize| step == time + 3 * env;
     if step == 0 {

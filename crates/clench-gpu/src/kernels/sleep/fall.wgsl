@@ -100,6 +100,9 @@ fn unite_block(b: u32) {
                 unite_coordinate(NONE, NJNT + source - NV);
             }
         }
+        case METRIC_TERM: {
+            // It acts on one tree, or on trees that never sleep.
+        }
         case LIMIT: {
             unite_coordinate(NONE, source >> 1u);
         }
