@@ -21,6 +21,7 @@ const BRIEF: [&[&str]; 2] = [
     &[
         "autoreset::",
         "discrete::",
+        "sleep_combined::",
         "sleeping::",
         "slots::",
         "stiction::",

@@ -35,9 +35,6 @@ rules! {
         let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
         (coulomb && cg).then(|| "option contact_model".to_owned())
     };
-    "sleep is not supported with stiction yet": |s| {
-        (s.settings.flags.sleep && s.settings.stiction).then(|| "flag sleep".to_owned())
-    };
     "contacts between these two kinds of shape are not supported yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;

@@ -114,7 +114,7 @@ kernels! {
     /// Spins free bodies that nothing touches, with the integrator `discrete`.
     SPIN = "spin", Team: "team", "sleep/awake", "chains", "ellipsoid", "ellipsoid_rates", "gyroscopic", "spin";
     /// Drags the stick references and the displacements of dry friction along, with the option `stiction`.
-    DRAG = "drag", Workgroup: "group", "surface", "row_spring", "stiction/pairs", "stiction/friction", "stiction/return_mapping", "stiction/drag";
+    DRAG = "drag", Workgroup: "group", "sleep/awake", "surface", "row_spring", "stiction/pairs", "stiction/friction", "stiction/return_mapping", "stiction/drag";
     /// Computes the duality gap of the solve, on request.
     GAP = "gap", Team: "team", "tree", "substitution", "articulated", "factor_m", "gap";
     /// Computes camera poses, on request.

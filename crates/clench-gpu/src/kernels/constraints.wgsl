@@ -46,14 +46,6 @@ fn add_row(position: f32, aref: f32, stiffness: f32, damping: f32, r: f32, shape
     nrow++;
 }
 
-// Returns true if a dof or tendon with dry friction is awake.
-fn is_friction_awake(source: u32) -> bool {
-    if (source < NV) {
-        return is_dof_awake(source);
-    }
-    return is_tendon_awake(source - NV);
-}
-
 fn push_friction(k: u32) {
     let source = words[FRICTION_SOURCE + k];
     if (SLEEP && !is_friction_awake(source)) {

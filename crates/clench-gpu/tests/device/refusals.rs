@@ -24,12 +24,6 @@ fn unsupported_features_are_refused_by_name() {
     for (text_of_model, words) in [
         (
             model(
-                "<option><flag sleep='enable'/></option><custom><text name='clench.stiction' data='true'/></custom>",
-            ),
-            "flag sleep: sleep is not supported with stiction",
-        ),
-        (
-            model(
                 "<option solver='CG'/><custom><text name='clench.contact_model' data='coulomb'/></custom>",
             ),
             "option contact_model: Coulomb's law needs Newton's method",

@@ -165,3 +165,44 @@ fn trees_sleep_with_the_integrator_discrete_as_on_the_processor() {
         }
     }
 }
+
+/// Also writes references that are no pair's.
+fn disturb_sticky(env: usize, step: usize, state: &mut State<f64>) {
+    disturb_nap(env, step, state);
+    let used = state.stick_references.iter().position(|r| r.first == 0.0);
+    if step == 200 + env
+        && let Some(next) = used
+    {
+        // No geom has the first tag, and pairs with the others do not touch.
+        let tags = [[99.0, 1.0], [1.0, 9.0], [-3.0, 1.0], [4.0, 8.0]];
+        for (reference, [first, second]) in state.stick_references[next..].iter_mut().zip(tags) {
+            (reference.first, reference.second) = (first, second);
+        }
+    }
+}
+
+/// Bodies on a slope stick while they sleep, and dry friction of sleeping joints and tendons stays displaced.
+#[test]
+fn trees_sleep_with_friction_that_sticks_as_on_the_processor() {
+    let comparison = Comparison::<f64> {
+        steps: 600,
+        tolerance: 1e-9,
+        from_same: false,
+        disturb: disturb_sticky,
+    };
+    let sticks = "<custom><text name='clench.stiction' data='true'/></custom><tendon>
+          <fixed frictionloss='0.02'><joint joint='driven' coef='1'/></fixed>
+          <fixed frictionloss='0.02'><joint joint='first' coef='1'/><joint joint='second' coef='1'/></fixed>";
+    for option in ["", "integrator='discrete' cone='elliptic'"] {
+        let option = format!("<option gravity='0.8 0.2 -9.7' {option} ");
+        let file = own("nap")
+            .replacen("<option ", &option, 1)
+            .replacen("<tendon>", sticks, 1);
+        if let Some((asleep, wakes)) = sleeps_alike(&text(&file), &[], &comparison) {
+            assert!(
+                (0.2..0.9).contains(&asleep) && wakes > 15,
+                "{asleep} {wakes}"
+            );
+        }
+    }
+}

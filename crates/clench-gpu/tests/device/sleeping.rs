@@ -1,6 +1,6 @@
 //! Sleep: in every step the same trees sleep as on the processor.
 
-use crate::common::{difference, own, text};
+use crate::common::{difference, own, reference_numbers, text};
 use clench_gpu::{GpuError, GpuReal};
 use clench_math::Vec3;
 use clench_rigid::model::Model;
@@ -55,8 +55,9 @@ pub struct Comparison<S: GpuReal> {
 /// The number of environments.
 pub const COUNT: usize = 3;
 
-/// Asserts that in each step the same trees sleep as on the processor, and that positions and outputs agree. Returns
-/// the share of trees that slept, and the number of times that any woke; `None` if there is no device.
+/// Asserts that in each step the same trees sleep as on the processor, and that positions, the memory of friction that
+/// sticks, and outputs agree. Returns the
+/// share of trees that slept, and the number of times that any woke; `None` if there is no device.
 pub fn sleeps_alike<S: GpuReal>(
     model: &Arc<Model>,
     outputs: &[&str],
@@ -71,7 +72,7 @@ pub fn sleeps_alike<S: GpuReal>(
     let mut batch = batch::<S>(model, COUNT)?;
     batch.record(outputs).expect("the device computes them");
     let mut sims = Vec::from_iter((0..COUNT).map(|_| Sim::<S>::new(model.clone()).expect("valid")));
-    let mut state = State::<S>::new(model);
+    let mut state = State::<S>::new(sims[0].model());
     let (mut asleep, mut wakes) = (0, 0);
     for step in 0..steps {
         for (env, sim) in sims.iter_mut().enumerate() {
@@ -92,6 +93,15 @@ pub fn sleeps_alike<S: GpuReal>(
             assert_eq!(found, expected, "{what}");
             let far = apart(batch.state.qpos.row(env), &sim.state.qpos);
             assert!(far <= tolerance, "{what}: {far:.1e}");
+            let far = apart(
+                batch.state.stick_friction.row(env),
+                &sim.state.stick_friction,
+            );
+            assert!(far <= tolerance, "{what}: dry friction: {far:.1e}");
+            let found = batch.state.stick_references.row(env);
+            let found = Vec::from_iter(found.iter().map(|x| x.to_f64()));
+            let far = apart(&found, &reference_numbers(&sim.state.stick_references));
+            assert!(far <= tolerance, "{what}: stick references: {far:.1e}");
             for name in outputs {
                 let found = batch.output(name).expect("recorded").row(env);
                 let far = apart(found, &sim.output(name).expect("there"));

@@ -35,6 +35,14 @@ fn is_tendon_awake(t: u32) -> bool {
     return false;
 }
 
+// Returns true if a dof or tendon with dry friction is awake.
+fn is_friction_awake(source: u32) -> bool {
+    if (source < NV) {
+        return is_dof_awake(source);
+    }
+    return is_tendon_awake(source - NV);
+}
+
 // Returns true if any dof of a joint or tendon is awake.
 fn is_coordinate_awake(c: u32) -> bool {
     if (c < NJNT) {

@@ -61,9 +61,40 @@ fn store(slot: u32, pair: u32, reference: RelativePose) {
     }
 }
 
-// Replaces the references by those of the pairs that carry a load, in the order of their contacts.
+// Returns true if the bodies of a reference, at `offset` (in work), sleep. Users may write
+// any number.
+fn does_reference_sleep(offset: u32) -> bool {
+    let first = u32(fetch(offset)) - 1u;
+    let second = u32(fetch(offset + 1u)) - 1u;
+    return max(first, second) < NGEOM && !is_either_awake(words[GEOM_BODY + first], words[GEOM_BODY + second]);
+}
+
+// Moves the references of pairs that sleep to the front. Returns their number.
+fn keep_sleeping() -> u32 {
+    var kept = 0u;
+    var empty = 0u;
+    for (var start = 0u; start < MAX_STICK_PAIRS; start += GROUP) {
+        let offset = START_STICK_REFERENCES + REFERENCE_SIZE * min(start + lane, MAX_STICK_PAIRS - 1u);
+        let ends = start + lane >= MAX_STICK_PAIRS || fetch(offset) == 0.0;
+        let ended = sums_up_to(vec4f(select(f32(0.0), f32(1.0), ends), 0.0, 0.0, 0.0));
+        let keeps = !ends && empty + u32(ended.before.x) == 0u && does_reference_sleep(offset);
+        let sums = sums_up_to(vec4f(select(f32(0.0), f32(1.0), keeps), 0.0, 0.0, 0.0));
+        for (var k = 0u; keeps && k < REFERENCE_SIZE; k++) {
+            put_state(STICK_REFERENCES + REFERENCE_SIZE * (kept + u32(sums.before.x)) + k, fetch(offset + k));
+        }
+        empty += u32(ended.all.x);
+        kept += u32(sums.all.x);
+    }
+    return kept;
+}
+
+// Replaces the references by those of the pairs that sleep, and of those that carry a load, in the order of their
+// contacts.
 fn drag_references(nblock: u32) {
     var used = 0u;
+    if (SLEEP) {
+        used = keep_sleeping();
+    }
     for (var start = 0u; start < nblock; start += GROUP) {
         let b = start + lane;
         var dragged = Dragged();

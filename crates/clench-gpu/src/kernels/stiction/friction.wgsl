@@ -1,10 +1,12 @@
 // The displacements of dry friction of dofs and tendons after a solve. CPU counterpart: `drag_friction` in
 // `stiction/friction.rs`.
 
-// Limits the displacements to those that friction carries. Without friction they become zero.
+// Limits the displacements to those that friction carries. Without friction they become zero, and asleep they remain.
 fn drag_friction(nblock: u32) {
     for (var k = lane; k < NV + NTENDON; k += GROUP) {
-        put_state(STICK_FRICTION + k, 0.0);
+        if (!SLEEP || is_friction_awake(k)) {
+            put_state(STICK_FRICTION + k, 0.0);
+        }
     }
     join();
     for (var b = lane; b < nblock; b += GROUP) {
