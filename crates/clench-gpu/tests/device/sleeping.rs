@@ -56,8 +56,8 @@ pub struct Comparison<S: GpuReal> {
 pub const COUNT: usize = 3;
 
 /// Asserts that in each step the same trees sleep as on the processor, and that positions, the memory of friction that
-/// sticks, and outputs agree. Returns the
-/// share of trees that slept, and the number of times that any woke; `None` if there is no device.
+/// sticks, and outputs agree. Returns the share of trees that slept, and the number of times that any woke; `None` if
+/// there is no device.
 pub fn sleeps_alike<S: GpuReal>(
     model: &Arc<Model>,
     outputs: &[&str],
