@@ -61,8 +61,7 @@ fn store(slot: u32, pair: u32, reference: RelativePose) {
     }
 }
 
-// Returns true if the bodies of a reference, at `offset` (in work), sleep. Users may write
-// any number.
+// Returns true if the bodies of a reference, at `offset` (in work), sleep. Users may write any number.
 fn does_reference_sleep(offset: u32) -> bool {
     let first = u32(fetch(offset)) - 1u;
     let second = u32(fetch(offset + 1u)) - 1u;
