@@ -21,9 +21,13 @@ const BRIEF: [&[&str]; 2] = [
     &[
         "autoreset::",
         "discrete::",
+        "sizes::",
         "sleep_combined::",
         "sleeping::",
         "slots::",
+        "stages::applied_forces",
+        "stages::coulombs_law",
+        "stages::kernels_of_a_models_own",
         "stiction::",
         "touch::",
     ],
