@@ -54,7 +54,7 @@ impl Tables {
         let sleeps = s.flags.sleep;
         let trees = if sleeps { &m.trees[..] } else { &[] };
         self.fixed_flag("SLEEP", sleeps);
-        // Actuators have activations, sensors and controls pass, and equalities may wake trees in every step.
+        // Activations and delays change while trees sleep, and equalities and slots may wake trees in any step.
         let bare = m.actuators.is_empty() && m.equalities.is_empty() && slots == 0;
         let rests = bare && m.nhistory == 0 && m.nplastic == 0;
         self.fixed_flag("MAY_REST", sleeps && rests);
