@@ -1,6 +1,6 @@
-//! The use of kernels.
+//! Options with which the kernels of a batch are compiled.
 
-/// The use of the kernels of a batch, besides its model.
+/// Options of the kernels, besides the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct KernelOptions {
     /// True if they serve any model: they read the layout for its features.

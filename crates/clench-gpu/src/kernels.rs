@@ -91,7 +91,7 @@ kernels! {
     POSITIONS = "positions", Team: "team", "kinematics", "com", "tree", "substitution", "chains", "wrap", "tendon",
         "outputs", "transmission", "articulated", "outer", "factor_m", "inertia";
     /// Finds near pairs.
-    BROAD_PHASE = "broad_phase", Team: "team", "sleep/awake", "sleep/wake", "sleep/pulled", "broad_phase";
+    BROAD_PHASE = "broad_phase", Team: "team", "sleep/awake", "sleep/wake", "sleep/pulled", "sleep/near", "broad_phase";
     /// Finds the contacts of near pairs.
     NARROW_PHASE = "narrow_phase", NarrowPhase: "near_pairs", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
@@ -252,6 +252,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
         clench_solver::METHOD_CONSTANTS,
         clench_collide::SHAPE_CONSTANTS,
         clench_collide::CONVEX_CONSTANTS,
+        clench_rigid::constraint::softness::SOFTNESS_CONSTANTS,
         clench_rigid::stiction::STICTION_CONSTANTS,
         &[("COUNTER_AWAKE", AWAKE), ("COUNTER_READY", READY)],
     ];

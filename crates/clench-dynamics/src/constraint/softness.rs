@@ -35,6 +35,11 @@ const MIN_VALUE: f64 = 1e-15;
 const MIN_ROUNDINGS: f64 = 4.5;
 /// The limits of the impedance (MuJoCo's `mjMINIMP`, `mjMAXIMP`).
 const IMPEDANCE_RANGE: [f64; 2] = [0.0001, 0.9999];
+/// These limits, by their names in the GPU kernels.
+pub const SOFTNESS_CONSTANTS: &[(&str, f64)] = &[
+    ("MIN_IMPEDANCE", IMPEDANCE_RANGE[0]),
+    ("MAX_IMPEDANCE", IMPEDANCE_RANGE[1]),
+];
 /// MuJoCo's default reference dynamics: time constant 0.02 s, damping ratio 1. They replace a solref of mixed signs.
 pub const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
 /// MuJoCo's default impedance.

@@ -69,7 +69,7 @@ fn push_frames(equality: u32, is_weld: bool) {
     }
 }
 
-// Returns the kind of an equality; that of an inactive one is static, and of one in a slot that ties static bodies.
+// Returns the kind of an equality. It is static if the equality is inactive, or ties static bodies in a slot.
 fn active_kind(equality: u32) -> u32 {
     if (is_in_slot(equality)) {
         let kind = kind_in_slot(equality - FIRST_SLOT);

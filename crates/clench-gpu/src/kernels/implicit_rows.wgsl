@@ -1,8 +1,6 @@
 // Rows whose spring-damper is evaluated at the end of the step, in the metric of the integrator `discrete`. CPU
 // counterparts: `constraint/implicit.rs`, and `constraint/softness.rs`, which derives the formulas.
 
-const MAX_IMPEDANCE: f32 = 0.9999;
-
 // Returns the reference acceleration of a row at a velocity.
 fn reference_at_end(a: u32, velocity: f32) -> f32 {
     let rate = row(DAMPING + a) + TIMESTEP * row(STIFFNESS + a);

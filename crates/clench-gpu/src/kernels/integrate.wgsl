@@ -85,8 +85,8 @@ fn advance_activations(rates: u32, velocities: u32) {
     }
 }
 
-// Completes the step, or reverts it after a fault. Springs that yield and friction that sticks need the
-// velocity that moved the positions, and lengths and gradients of tendons at the start (all in work).
+// Completes the step, or reverts it after a fault. Springs that yield and friction that sticks need the velocity that
+// moved the positions, and lengths and gradients of tendons at the start (all in work).
 fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     end_in_team();
     check_results();

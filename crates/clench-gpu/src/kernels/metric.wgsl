@@ -3,7 +3,7 @@
 // `couple_smooth` in `dynamics/discrete.rs`.
 
 // The rounds of the smooth solve: the first is exact up to rounding, the others refine it if couplings are stiff.
-const EXACT_STEPS: u32 = 3u;
+const SMOOTH_ROUNDS: u32 = 3u;
 
 fn begin_metric() {
     copy_mass_to_factor();
@@ -219,7 +219,7 @@ fn accelerate_in_metric() {
         factor_couplings();
     }
     join();
-    let rounds = select(1u, EXACT_STEPS, NCOUPLING > 0u);
+    let rounds = select(1u, SMOOTH_ROUNDS, NCOUPLING > 0u);
     for (var round = 0u; round < rounds; round++) {
         remaining_forces(round > 0u);
         solve_tree(RATE);

@@ -10,7 +10,7 @@ struct Softness {
 }
 
 fn clamp_impedance(d: f32) -> f32 {
-    return clamp(d, 0.0001, 0.9999);
+    return clamp(d, MIN_IMPEDANCE, MAX_IMPEDANCE);
 }
 
 fn is_mixed(solref: vec2f) -> bool {

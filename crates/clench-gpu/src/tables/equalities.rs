@@ -99,8 +99,8 @@ impl Tables {
         self.slots(m, count, on, capacity);
     }
 
-    /// Adds slots for constraints that are added at run time; as equalities, they follow the first `count`. Those that
-    /// do not act wake trees.
+    /// Adds slots for constraints that are added at run time; as equalities, they follow the first `count`. They wake
+    /// trees even if equalities do not `act`.
     fn slots(&mut self, m: &Model, count: usize, act: bool, capacity: &mut Capacity) {
         self.fixed_flag("ANY_SLOTS", capacity.slots > 0);
         self.count("NSLOT", capacity.slots);
