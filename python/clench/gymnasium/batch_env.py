@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
@@ -181,6 +181,14 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         self._generators: list[np.random.Generator | None] = [None] * num_envs
         self._seeds: list[int | None] = [None] * num_envs
 
+    if not TYPE_CHECKING:  # Type checkers would accept any name.
+
+        def __getattr__(self, name: str) -> Any:
+            """Raises the error of an attribute that does not exist, such as the batch of a closed environment."""
+            if name == "batch" and self.closed:
+                raise ClosedEnvironmentError(f"{self._name} is closed")
+            return object.__getattribute__(self, name)
+
     def __getstate__(self) -> dict[str, Any]:
         """Returns the attributes of a copy or pickle, without views of the batch's memory."""
         state = dict(self.__dict__)
@@ -246,7 +254,6 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         clench.SimulationError
             If an initial state cannot be simulated.
         """
-        self._check_open()
         mask = checked_mask(options, self.num_envs)
         if not self.started and not mask.all():
             raise ResetNeeded(f"{self._name}: the first reset must be of all environments")
@@ -326,12 +333,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     def _name(self) -> str:
         return type(self).__name__ if self.spec is None else self.spec.id
 
-    def _check_open(self) -> None:
-        if self.closed:
-            raise ClosedEnvironmentError(f"{self._name} is closed")
-
     def _check_ready(self) -> None:
-        self._check_open()
         if not self.started:
             raise ResetNeeded(f"{self._name}: call reset() before step()")
 

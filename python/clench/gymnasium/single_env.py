@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
-from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode
 from numpy.typing import ArrayLike, NDArray
 
@@ -95,8 +95,6 @@ class SingleEnv(gymnasium.Env[Any, Array]):
         gymnasium.error.ResetNeeded
             Before the first reset.
         """
-        if self.vector.closed:
-            raise ClosedEnvironmentError(f"{self} is closed")
         if not self.vector.started:
             raise ResetNeeded(f"{self}: call reset() before step()")
         row = checked_action(action, self.action_space, str(self))

@@ -160,7 +160,8 @@ def test_out_of_turn(make: Any) -> None:
     env.reset()
     env.close()
     env.close()
-    for call in (lambda: env.step(action), env.reset):
+    batch = (lambda: env.sim, lambda: env.model) if isinstance(env, CartEnv) else (lambda: env.batch,)
+    for call in (lambda: env.step(action), env.reset, *batch):
         with pytest.raises(ClosedEnvironmentError, match="closed"):
             call()
 
