@@ -112,6 +112,19 @@ def test_a_death_changes_no_bit(snapshot_every: int) -> None:
         assert spread.replaced == 3
 
 
+def test_a_death_changes_no_output_that_was_read() -> None:
+    alone, spread = pair()
+    with spread:
+        for batch in (alone, spread):
+            batch.qpos[:, 2] += 0.1
+            batch.qacc  # It is computed now, and later controls do not change it.
+            batch.ctrl[:] = 0.5
+        kill(spread, 0)
+        assert_same(spread, alone)
+        # Ray can free what was received.
+        assert all(call.answer is None for call in spread._workers[0].journal if call.method != "write")
+
+
 def test_a_death_in_a_rollout_changes_no_bit() -> None:
     alone, spread = pair(snapshot_every=5)
     ctrl = np.random.default_rng(2).uniform(-1, 1, (N, 40, alone.model.nu))

@@ -280,6 +280,17 @@ class Batch(Queries, DynamicConstraints):
         """The outputs that are recorded."""
         return self._one.outputs
 
+    def output(self, name: str) -> Array:
+        """Returns a copy of a recorded output, with environments as first axis."""
+        # It may be computed when it is read, from the controls of that moment: a new worker repeats the call.
+        return np.concatenate(self._change("copied_output", [(name,)] * len(self._parts)))
+
+    def sensor(self, which: str | SupportsIndex) -> Array:
+        """Returns a copy of the values of one sensor in every environment, from ``sensordata``, which must be
+        recorded."""
+        sensor = self.model.sensor(which)
+        return self.output("sensordata")[:, sensor.adr : sensor.adr + sensor.dim]
+
     def fault(self, env: SupportsIndex) -> str | None:
         """Returns the reason why an environment failed; None if it is running."""
         fault: str | None = self._of_env("fault", env)

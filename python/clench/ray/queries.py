@@ -41,16 +41,6 @@ class Queries:
         """Returns a copy of a parameter's values in every environment, after an axis of environments."""
         return self._gather("param", field)
 
-    def output(self, name: str) -> Array:
-        """Returns a copy of a recorded output, with environments as first axis."""
-        return self._gather("copied_output", name)
-
-    def sensor(self, which: str | SupportsIndex) -> Array:
-        """Returns a copy of the values of one sensor in every environment, from ``sensordata``, which must be
-        recorded."""
-        sensor = self.model.sensor(which)
-        return self.output("sensordata")[:, sensor.adr : sensor.adr + sensor.dim]
-
     def mass_matrix(self) -> Array:
         """Computes joint-space mass matrices (n, nv, nv)."""
         return self._gather("mass_matrix")

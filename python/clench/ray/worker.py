@@ -42,7 +42,7 @@ class Call:
     chosen: Mapping[str, Any]
     watched: Sequence[str]
     answer: Any = None
-    """Ray's reference to the result; it is replaced if the call is repeated."""
+    """Ray's reference to the result until it is received; it is replaced if the call is repeated."""
 
 
 class Worker:
@@ -138,6 +138,8 @@ class Worker:
         for _ in range(_TRIES):
             try:
                 answer: tuple[Any, dict[str, Array]] = self._ray.get(call.answer)
+                # Ray keeps a result in memory as long as there is a reference to it, and the journal keeps the call.
+                call.answer = None
                 self._take_snapshot(call)
                 return answer
             except self._deaths() as error:
@@ -165,10 +167,10 @@ class Worker:
         self._actor = self._new_actor()
         self.replaced += 1
         self._snapshot = None
-        for earlier in self.journal:
-            earlier.answer = self._submit(earlier)
-        if all(call is not earlier for earlier in self.journal):
-            call.answer = self._submit(call)
+        # A call in the journal is its last: each is received before the next is sent.
+        repeated = self.journal if self.journal[-1] is call else [*self.journal, call]
+        for earlier in repeated:
+            call.answer = self._submit(earlier)
 
     def _new_actor(self) -> Any:
         # Ray must not retry a lost task: the calls after the snapshot must be repeated in order.
