@@ -58,7 +58,6 @@ pub(super) fn add_all(
         number[old] = new;
         has_children[builder.bodies[old].parent] |= old != 0;
     }
-    check_world(&builder.bodies[0])?;
     for &old in order {
         let spec = &builder.bodies[old];
         let context = BodyContext {
@@ -69,17 +68,6 @@ pub(super) fn add_all(
         add(builder, spec, &context, assets, model)?;
     }
     Ok(())
-}
-
-fn check_world(world: &BodySpec) -> Result<(), BuildError> {
-    let wrong = match world {
-        w if !w.joints.is_empty() => "the world cannot have joints",
-        w if w.mocap => "the world cannot be a mocap body",
-        w if w.inertial.is_some() => "the world cannot have an inertia",
-        w if w.pos != Vec3::ZERO || w.quat != Quat::IDENTITY => "the world cannot have a pose",
-        _ => return Ok(()),
-    };
-    Err(world.error(wrong))
 }
 
 /// The context of a body.

@@ -11,6 +11,7 @@ use super::{
 };
 use clench_collide::ShapeKind;
 use clench_dynamics::model::Integrator;
+use clench_math::{Quat, Vec3};
 
 /// Checks every element.
 ///
@@ -18,6 +19,7 @@ use clench_dynamics::model::Integrator;
 /// Returns an error for the first invalid number found.
 pub(super) fn check(builder: &ModelBuilder) -> Result<(), BuildError> {
     check_physics(builder)?;
+    check_world(&builder.bodies[0])?;
     for (index, body) in builder.bodies.iter().enumerate() {
         let body_name = describe(&body.name, index);
         check_body(body, &body_name)?;
@@ -100,6 +102,19 @@ fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
         require(finite(&numbers), "every contact override", "finite")?;
     }
     Ok(())
+}
+
+/// Returns an error if the first body cannot be the world.
+fn check_world(world: &BodySpec) -> Result<(), BuildError> {
+    let wrong = match world {
+        w if w.parent != 0 => "the world cannot have a parent",
+        w if !w.joints.is_empty() => "the world cannot have joints",
+        w if w.mocap => "the world cannot be a mocap body",
+        w if w.inertial.is_some() => "the world cannot have an inertia",
+        w if w.pos != Vec3::ZERO || w.quat != Quat::IDENTITY => "the world cannot have a pose",
+        _ => return Ok(()),
+    };
+    Err(world.error(wrong))
 }
 
 fn check_body(body: &BodySpec, body_name: &str) -> Result<(), BuildError> {

@@ -76,7 +76,11 @@ impl<S: Precision> Batch<S> {
     }
 
     /// Returns the number of the model of environment `env`, an index in [`models`](Self::models).
+    ///
+    /// # Panics
+    /// Panics if the environment does not exist.
     pub fn env_model(&self, env: usize) -> usize {
+        assert!(env < self.count(), "there is no environment {env}");
         self.models.of(env)
     }
 
@@ -94,10 +98,14 @@ impl<S: Precision> Batch<S> {
 
     /// Returns the index in the model of environment `env` of a geom of [`model`](Self::model); `None` if the
     /// environment does not have it.
+    ///
+    /// # Panics
+    /// Panics if the environment does not exist.
     pub fn own_geom(&self, env: usize, geom: usize) -> Option<usize> {
+        let model = self.env_model(env);
         match self.models.shared() {
             Some(shared) => {
-                let mut own = shared.geoms(self.env_model(env)).iter();
+                let mut own = shared.geoms(model).iter();
                 own.position(|&place| place == geom)
             }
             None => (geom < self.model.geoms.len()).then_some(geom),

@@ -315,3 +315,9 @@ fn states_are_equal_bit_by_bit() {
         assert_eq!(other, other.clone(), "change {i}");
     }
 }
+
+#[test]
+#[should_panic(expected = "there is no environment 13")]
+fn an_environment_that_does_not_exist_has_no_geoms() {
+    moving().own_geom(ENVS, 0);
+}

@@ -235,6 +235,8 @@ const CASES: &[Case] = &[
     (|b| b.bodies[2].parent = 2, "body \"b\"", "parent must come before"),
     (|b| b.bodies[2].name = "a".into(), A, "already in use"),
     (|b| b.bodies[2].name = "world".into(), "body \"world\"", "already in use"),
+    (|b| b.bodies[0].parent = 7, "body \"world\"", "cannot have a parent"),
+    (|b| (b.bodies[0].parent, b.compiler.fusestatic) = (7, true), "body \"world\"", "cannot have a parent"),
     (|b| b.bodies[0].joints.push(JointSpec::free("")), "body \"world\"", "cannot have joints"),
     (|b| b.bodies[1].pos.x = f64::INFINITY, A, "pos"),
     (|b| b.bodies[1].quat = Quat::new(0.0, 0.0, 0.0, 0.0), A, "quat is zero"),
