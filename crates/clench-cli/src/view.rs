@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     if arguments.envs.is_none() {
         let mut sim = Sim::<f64>::with_options(Arc::clone(&model), options)?;
         starts.start(&mut sim)?;
-        return show(arguments, sim);
+        return show(arguments, sim, starts.keyframe);
     }
     let options = BatchOptions {
         options,
@@ -86,11 +86,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     };
     let mut batch = Batch::<f64>::with_options(Arc::clone(&model), envs, options)?;
     starts.start_all(&mut batch)?;
-    show(arguments, batch)
+    show(arguments, batch, starts.keyframe)
 }
 
-/// Steps and shows a simulation or a batch until a signal arrives.
-fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
+/// Steps and shows a simulation or a batch, which starts at a keyframe or not, until a signal arrives.
+fn show<V: Stepped>(arguments: &Arguments, viewed: V, keyframe: Option<usize>) -> Result<ExitCode> {
     let page = Page::find(|text| print_message(text))?;
     let options = ServerOptions {
         host: arguments.host.clone(),
@@ -102,6 +102,7 @@ fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
     let server = Server::start(&options, page, &scene)?;
     announce(arguments, &server)?;
     let mut player = Player::new(viewed, arguments.paused);
+    player.interaction().start = keyframe;
     player.interaction().selection.count = player.viewed().envs().min(AT_FIRST);
     play(player, &server, &interrupt);
     Ok(ExitCode::SUCCESS)

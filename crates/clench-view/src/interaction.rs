@@ -28,6 +28,8 @@ pub struct Interaction {
     pub factor: f64,
     /// The selected environments.
     pub selection: Selection,
+    /// The keyframe of the run's start, to which resets return; None for the initial state of the model.
+    pub start: Option<usize>,
     /// The active spring and its environment.
     drag: Option<(usize, Perturbation)>,
 }
@@ -67,6 +69,7 @@ impl Interaction {
                 first: 0,
                 count: 1,
             },
+            start: None,
             drag: None,
         }
     }
@@ -121,7 +124,7 @@ impl Interaction {
             }
             Command::Reset {} => {
                 self.release(viewed)?;
-                viewed.reset(env, None)?;
+                viewed.reset(env, self.start)?;
             }
             Command::Keyframe { index } => {
                 self.release(viewed)?;

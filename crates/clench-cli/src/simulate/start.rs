@@ -33,7 +33,7 @@ pub(crate) struct StartArguments {
 /// The initial states of the environments of a run.
 pub(crate) struct Starts<'a> {
     model: &'a Model,
-    keyframe: Option<usize>,
+    pub(crate) keyframe: Option<usize>,
     states: Option<Rows>,
     noise: f64,
     seed: u64,

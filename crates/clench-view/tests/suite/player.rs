@@ -34,3 +34,18 @@ fn no_moment_before_a_reset_is_shown_after_it() {
     assert!((time - 0.5 - state.time).abs() < 0.02, "{}", state.time);
     assert_eq!(state.qpos, [0.0], "the state is one after the reset");
 }
+
+#[test]
+fn a_reset_returns_to_the_keyframe_of_the_start() {
+    let slide =
+        "<mujoco><worldbody><body><joint type='slide'/><geom size='0.1'/></body></worldbody>
+        <keyframe><key qpos='0.3'/><key qpos='0.7'/></keyframe></mujoco>";
+    let model = Arc::new(load_str(slide).expect("the model is valid"));
+    let sim = Sim::<f64>::new(model).expect("it can be simulated");
+    let mut player = Player::new(sim, true);
+    for (start, expected) in [(None, 0.0), (Some(1), 0.7)] {
+        player.interaction().start = start;
+        player.apply(Command::Reset {}).expect("it is reset");
+        assert_eq!(player.viewed().state.qpos, [expected]);
+    }
+}
