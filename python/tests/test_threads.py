@@ -140,6 +140,7 @@ def test_one_of_two_steps_is_done() -> None:
                 batch.step(0)
             except clench.BusyError as error:
                 failures.append(error)
+            assert repr(batch) == repr(alone)
     alone.step(steps)
     assert other.failure is None and len(failures) > 10
     assert same_state(batch.state, alone.state)

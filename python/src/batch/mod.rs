@@ -103,6 +103,7 @@ pub(crate) struct Batch {
     layout: Arc<clench::Model>,
     n_envs: usize,
     precision: Bits,
+    device: String,
     threads: usize,
     lanes: usize,
     /// The memory of derivatives, created on demand.
@@ -152,10 +153,11 @@ impl Batch {
             let mut guard = lock(&inner, "batch")?;
             each!(&mut *guard, batch => {
                 let views = StateViews::new(&keeper, &mut batch.state, false)?;
-                (views, batch.threads(), batch.lanes(), Arc::clone(batch.model()))
+                let device = batch.device().map_or_else(|| "cpu".to_owned(), |name| format!("gpu:{name}"));
+                (views, device, batch.threads(), batch.lanes(), Arc::clone(batch.model()))
             })
         };
-        let (views, threads, lanes, layout) = batch;
+        let (views, device, threads, lanes, layout) = batch;
         let batch = Batch {
             inner,
             keeper: keeper.unbind(),
@@ -165,6 +167,7 @@ impl Batch {
             layout,
             n_envs: n_envs.0,
             precision,
+            device,
             threads,
             lanes,
             linearizer: Mutex::default(),
@@ -308,10 +311,8 @@ impl Batch {
 
     /// str : The device that steps: "cpu", or "gpu:" and the name of the GPU.
     #[getter]
-    fn device(&self) -> PyResult<String> {
-        let guard = lock(&self.inner, "batch")?;
-        let name = each!(&*guard, batch => batch.device());
-        Ok(name.map_or_else(|| "cpu".to_owned(), |name| format!("gpu:{name}")))
+    fn device(&self) -> &str {
+        &self.device
     }
 
     /// int : Number of threads.
@@ -337,16 +338,14 @@ impl Batch {
         self.n_envs
     }
 
-    fn __repr__(&self) -> PyResult<String> {
+    fn __repr__(&self) -> String {
         let name = &self.model.get().inner().name;
-        let execution = match self.device()?.as_str() {
+        let execution = match self.device() {
             "cpu" => format!("{} lanes, {} threads", self.lanes, self.threads),
             device => format!("on {device}"),
         };
         let (count, bits) = (self.n_envs, self.precision.name());
-        Ok(format!(
-            "<clench.Batch of {count} x {name:?}, {bits} bits, {execution}>"
-        ))
+        format!("<clench.Batch of {count} x {name:?}, {bits} bits, {execution}>")
     }
 }
 
