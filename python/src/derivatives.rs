@@ -6,7 +6,7 @@ use crate::error::sim_error;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
 use clench::derivatives::{
-    self, BatchLinearizer, ErrorBound, Linearizer, Matrix, Request, StateField,
+    self, BatchLinearizer, EnvError, ErrorBound, Linearizer, Matrix, Request, StateField,
 };
 use clench::rigid::batch::Precision;
 use clench::rigid::model::ParamField;
@@ -269,8 +269,7 @@ pub(crate) fn with_linearizer<'a, R>(
 }
 
 /// Returns the error of an environment of a batch.
-pub(crate) fn in_env(py: Python<'_>, (env, error): (usize, SimError)) -> PyErr {
-    let error = sim_error(error);
-    let text = format!("environment {env}: {}", error.value(py));
-    PyErr::from_type(error.get_type(py), text)
+pub(crate) fn in_env(py: Python<'_>, error: EnvError) -> PyErr {
+    let text = error.to_string();
+    PyErr::from_type(sim_error(error.error).get_type(py), text)
 }

@@ -10,6 +10,23 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Mutex;
 
+/// An error of an environment of a batch.
+#[derive(Debug)]
+pub struct EnvError {
+    /// The index of the environment.
+    pub env: usize,
+    /// Its error.
+    pub error: SimError,
+}
+
+impl fmt::Display for EnvError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "environment {}: {}", self.env, self.error)
+    }
+}
+
+impl std::error::Error for EnvError {}
+
 /// Computes the derivatives of a batch on as many threads as the batch has, and reuses its memory. Derivatives are
 /// computed in double precision, also those of a batch in single precision.
 pub struct BatchLinearizer<S: Precision = f64> {
@@ -67,9 +84,9 @@ impl<S: Precision> BatchLinearizer<S> {
     /// Linearizes the next step of every environment of the batch, whose state does not change.
     ///
     /// # Errors
-    /// Returns the error of the first environment that has one, with its index. A batch of several models has no
-    /// derivatives by parameters of geoms, and none of outputs whose number differs between models; nor are there any
-    /// if the processor lacks the compiled instructions.
+    /// Returns the error of the first environment that has one. A batch of several models has no derivatives by
+    /// parameters of geoms, and none of outputs whose number differs between models; nor are there any if the processor
+    /// lacks the compiled instructions.
     ///
     /// # Panics
     /// Panics if the batch has another number of environments than the one that this was created for.
@@ -77,8 +94,8 @@ impl<S: Precision> BatchLinearizer<S> {
         &mut self,
         batch: &mut Batch<S>,
         request: &Request,
-    ) -> Result<&[Linearization], (usize, SimError)> {
-        check_alike(batch, request).map_err(|error| (0, error))?;
+    ) -> Result<&[Linearization], EnvError> {
+        check_alike(batch, request).map_err(|error| EnvError { env: 0, error })?;
         let results = &mut self.results;
         run(
             &mut self.workers,
@@ -106,8 +123,8 @@ impl<S: Precision> BatchLinearizer<S> {
         batch: &mut Batch<S>,
         request: &Request,
         tangents: &[InputTangent],
-    ) -> Result<&[OutputTangent], (usize, SimError)> {
-        check_alike(batch, request).map_err(|error| (0, error))?;
+    ) -> Result<&[OutputTangent], EnvError> {
+        check_alike(batch, request).map_err(|error| EnvError { env: 0, error })?;
         let results = &mut self.along;
         assert_eq!(tangents.len(), results.len(), "one tangent an environment");
         run(
@@ -136,8 +153,8 @@ impl<S: Precision> BatchLinearizer<S> {
         batch: &mut Batch<S>,
         request: &Request,
         gradients: &[OutputGradient],
-    ) -> Result<&[InputGradient], (usize, SimError)> {
-        check_alike(batch, request).map_err(|error| (0, error))?;
+    ) -> Result<&[InputGradient], EnvError> {
+        check_alike(batch, request).map_err(|error| EnvError { env: 0, error })?;
         let results = &mut self.gradients;
         assert_eq!(
             gradients.len(),
@@ -163,7 +180,7 @@ impl<S: Precision> BatchLinearizer<S> {
     /// see [`Linearizer::rollout_vjp`].
     ///
     /// # Errors
-    /// Returns the error of the first environment that has one, with its index.
+    /// Returns the error of the first environment that has one.
     ///
     /// # Panics
     /// Panics if the number of matrices is not that of environments, or if a matrix has another shape.
@@ -173,7 +190,7 @@ impl<S: Precision> BatchLinearizer<S> {
         memory: bool,
         controls: &[Matrix],
         gradients: &[Matrix],
-    ) -> Result<&[RolloutGradient], (usize, SimError)> {
+    ) -> Result<&[RolloutGradient], EnvError> {
         self.rollout_vjp_while(batch, memory, controls, gradients, &|| true)
     }
 
@@ -192,7 +209,7 @@ impl<S: Precision> BatchLinearizer<S> {
         controls: &[Matrix],
         gradients: &[Matrix],
         go_on: &(dyn Fn() -> bool + Sync),
-    ) -> Result<&[RolloutGradient], (usize, SimError)> {
+    ) -> Result<&[RolloutGradient], EnvError> {
         let results = &mut self.rollouts;
         let counts = [controls.len(), gradients.len()];
         assert_eq!(counts, [results.len(); 2], "one matrix an environment");
@@ -218,7 +235,7 @@ fn run<S: Precision, R: Send>(
     batch: &mut Batch<S>,
     results: &mut [R],
     each: impl Fn(&mut Linearizer, &Sim<f64>, usize, &mut R) -> Result<(), SimError> + Sync,
-) -> Result<(), (usize, SimError)> {
+) -> Result<(), EnvError> {
     assert_eq!(batch.count(), results.len(), "the batch of this memory");
     let (batch, each) = (&Mutex::new(batch), &each);
     let share = results.len().div_ceil(workers.len()).max(1);
@@ -248,7 +265,7 @@ impl<S: Precision> Worker<S> {
         first: usize,
         results: &mut [R],
         each: &impl Fn(&mut Linearizer, &Sim<f64>, usize, &mut R) -> Result<(), SimError>,
-    ) -> Result<(), (usize, SimError)> {
+    ) -> Result<(), EnvError> {
         for own in &mut self.own {
             own.sim = None;
         }
@@ -260,7 +277,7 @@ impl<S: Precision> Worker<S> {
             };
             copied
                 .and_then(|(sim, linearizer)| each(linearizer, sim, env, result))
-                .map_err(|error| (env, error))?;
+                .map_err(|error| EnvError { env, error })?;
         }
         Ok(())
     }

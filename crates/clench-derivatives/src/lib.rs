@@ -30,7 +30,7 @@ mod stage;
 mod tangent;
 mod vjp;
 
-pub use batch::BatchLinearizer;
+pub use batch::{BatchLinearizer, EnvError};
 pub use clench_solver::ErrorBound;
 pub use field::StateField;
 pub use linearizer::{Linearization, Linearizer};

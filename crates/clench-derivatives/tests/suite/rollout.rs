@@ -168,3 +168,14 @@ fn a_stopped_rollout_has_no_gradient_and_the_next_one_has() {
     let expected = fresh.rollout_vjp(&mut batch, false, &controls, &gradients);
     assert_eq!(found, expected.expect("derivatives"));
 }
+
+#[test]
+fn the_error_of_an_environment_names_it() {
+    let model = Arc::new(load("quadruped.xml"));
+    let mut batch = Batch::<f64>::new(model, 3).expect("a batch");
+    batch.state.qvel.row_mut(1)[0] = f64::NAN;
+    let mut linearizer = BatchLinearizer::new(&batch);
+    let error = linearizer.linearize(&mut batch, &Request::default());
+    let error: Box<dyn std::error::Error> = error.expect_err("NaN is refused").into();
+    assert!(error.to_string().starts_with("environment 1: "), "{error}");
+}
