@@ -35,20 +35,21 @@ class Files:
         """Inserts the included files, which lie in the model's folder or in that of the including file. Returns the folders
         of the files that inserted nodes were read from."""
         origins: dict[ET.Element, Path] = {}
-        for _ in range(100):
-            include = next(self.root.iter("include"), None)
-            if include is None:
-                return origins
+        included: set[Path] = set()
+        while (include := next(self.root.iter("include"), None)) is not None:
             parents = {child: parent for parent in self.root.iter() for child in parent}
             file = include.get("file", "")
             data = self.assets.get(Path(file).name)
             path = _first([folder / file, origins.get(include, folder) / file])
-            included = parsed((read(path, source) if data is None else data).decode("utf-8", "replace"), file)
-            origins.update((node, path.parent) for node in included.iter())
+            if path.resolve() in included:
+                raise LoadError(f'"{file}" is already included', source)
+            included.add(path.resolve())
+            tree = parsed((read(path, source) if data is None else data).decode("utf-8", "replace"), file)
+            origins.update((node, path.parent) for node in tree.iter())
             parent = parents[include]
             place = list(parent).index(include)
-            parent[place : place + 1] = list(included)
-        raise LoadError("files include each other in a cycle", source)
+            parent[place : place + 1] = list(tree)
+        return origins
 
     def read_assets(self, folder: Path, origins: Mapping[ET.Element, Path]) -> dict[str, Path]:
         """Reads the files that the document names, also in the folder of the included file that names them. Returns the

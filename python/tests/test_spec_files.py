@@ -134,3 +134,16 @@ def test_a_tuple_goes_with_its_last_element() -> None:
     spec = dressed()
     spec.body("b").remove()
     assert spec.build().nbody == 1 and not list(spec.section("custom"))
+
+
+def test_many_files_are_included_once_each(tmp_path: Path) -> None:
+    parts = [f"{index}.xml" for index in range(120)]
+    for part in parts:
+        (tmp_path / part).write_text("<mujoco><worldbody><site/></worldbody></mujoco>")
+    model = tmp_path / "model.xml"
+    model.write_text("".join(["<mujoco>", *(f'<include file="{part}"/>' for part in parts), "</mujoco>"]))
+    assert clench.ModelSpec.from_file(model).build().nsite == 120
+    for again in ("7.xml", "./7.xml", "model.xml"):
+        (tmp_path / "8.xml").write_text(f'<mujoco><include file="{again}"/></mujoco>')
+        with pytest.raises(clench.LoadError, match="is already included"):
+            clench.ModelSpec.from_file(model)
