@@ -169,8 +169,8 @@ fn is_inside(s: u32, prm: u32, p: vec3f) -> bool {
     return is_in_volume(words[s + SENSOR_SHAPE], parameter3(prm + SENSOR_PRM_VOLUME), local);
 }
 
-// Returns the sum of the normal forces of those contacts of the site's body whose line of force intersects the site's
-// volume.
+// Returns the sum of the normal forces of those contacts of the site's body whose line of force, followed out of the
+// body, intersects the site's volume.
 fn touch(s: u32, prm: u32) -> f32 {
     let site = words[s + SENSOR_OBJECT];
     let own = words[SITE_BODY + site];
@@ -189,7 +189,7 @@ fn touch(s: u32, prm: u32) -> f32 {
             continue;
         }
         let o = (fetch3(offset + 2u) - centre) * axes;
-        let d = (fetch3(offset + 5u) * select(f32(-1.0), f32(1.0), own == second)) * axes;
+        let d = (fetch3(offset + 5u) * select(f32(1.0), f32(-1.0), own == second)) * axes;
         sum += select(0.0, normal, intersects_volume(words[s + SENSOR_SHAPE], parameter3(prm + SENSOR_PRM_VOLUME), o, d));
     }
     return sum;

@@ -7,7 +7,7 @@ use clench_dynamics::model;
 use clench_math::{Mask, Mat3, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
-    /// Returns the sum of the normal forces of those contacts of a site's body whose line of force, followed into the
+    /// Returns the sum of the normal forces of those contacts of a site's body whose line of force, followed out of the
     /// body, meets the site's volume.
     #[kernel]
     pub(super) fn touch(&self, site: usize) -> T {
