@@ -59,7 +59,7 @@ pub(crate) struct Convergence<T: Real> {
     /// 1 / (mean inertia × nv), the scale of gradients and improvements.
     scale: T,
     tolerance: T,
-    /// CG: the duality gap, times `scale`, when friction was last limited by its own normal forces.
+    /// CG: the duality gap, times `scale`, when friction was last limited by its own normal forces; zero without any.
     outer_gap: T,
 }
 
@@ -183,6 +183,9 @@ impl<T: Real> Convergence<T> {
         }
         if proven.any() {
             let gap = self.scale * gap(problem, iterate, &mut ray.direction);
+            if !D::NEWTON {
+                self.outer_gap = iterate.normal_forces.if_pressed(gap);
+            }
             let proven = proven & gap.le(self.tolerance);
             let proven = self.consistent(problem, direction, (iterate, ray, stats), proven);
             self.end(proven, Status::Proven, stats);
@@ -312,7 +315,8 @@ impl<T: Real> Convergence<T> {
             let norm = self.reevaluate(problem, iterate, others);
             stats.gradient = T::select(others, self.scale * norm, stats.gradient);
             self.refreshed &= !others;
-            direction.restart(others);
+            // Conjugate directions stay conjugate where new limits have no effect.
+            direction.restart(others & (acts | T::Mask::splat(D::NEWTON)));
         }
         mask & consistent
     }

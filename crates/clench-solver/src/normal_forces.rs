@@ -139,6 +139,13 @@ impl<T: Real> NormalForces<T> {
         }
     }
 
+    /// Returns `x` in the lanes in which some λ is positive, else zero.
+    #[inline(always)]
+    pub(crate) fn if_pressed(&self, x: T) -> T {
+        let largest = (self.lambda.iter()).fold(T::ZERO, |largest, &lambda| largest.max(lambda));
+        T::select(largest.gt(T::ZERO), x, T::ZERO)
+    }
+
     /// Computes the largest |f − λ|.
     #[kernel]
     pub fn residual(&self, problem: &Problem<T>, force: &[T]) -> T {

@@ -80,6 +80,13 @@ fn conjugate_gradients_obey_it_too() {
     assert!(done >= 80, "{done} of {count}");
 }
 
+#[test]
+fn conjugate_gradients_obey_it_to_the_working_precision() {
+    let count = 100;
+    let done = converged(ConstraintSolver::Cg, 0.0, count);
+    assert!(done >= 60, "{done} of {count}");
+}
+
 /// Returns the problem of a contact with a plane, of two dofs, along it and away from it: with the lower triangle of
 /// the mass matrix, the unconstrained acceleration, D, the coefficient of friction, and aref along the plane.
 fn on_plane(
