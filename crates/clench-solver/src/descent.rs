@@ -4,6 +4,7 @@ use crate::costs::Totals;
 use crate::iterate::{Iterate, dot};
 use crate::line_search::{Precision, Step};
 use crate::options::Settings;
+use crate::passivity::scale_velocity;
 use crate::problem::Problem;
 use crate::ray::Ray;
 use crate::stats::{SolveStats, Status};
@@ -124,6 +125,10 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
         convergence.record(step, totals, norm, &mut state.stats);
         convergence.judge(problem, direction, state, step, totals, norm);
         state.clock.lap(SolvePart::Evaluation as usize);
+    }
+    if !D::NEWTON {
+        let state = (&mut state.iterate, &mut state.ray, &mut state.stats);
+        scale_velocity(problem, precision, state, convergence.scale);
     }
     convergence.finish(problem, state);
     state.clock.lap(SolvePart::Evaluation as usize);

@@ -33,6 +33,7 @@ mod normal_forces;
 mod noslip;
 mod options;
 mod partition;
+mod passivity;
 mod plain;
 mod prediction;
 mod problem;

@@ -24,6 +24,9 @@ pub struct Problem<T> {
     pub noslip_factor: TreeFactor<T>,
     /// Unconstrained acceleration a_unc = M⁻¹ τ, length nv.
     pub qacc_smooth: Vec<T>,
+    /// The acceleration −v / h that would end the motion within the step, length nv; empty if it is not known. With it
+    /// a solve by CG that reaches its limit of iterations does not add energy.
+    pub rest: Vec<T>,
     pub(crate) jacobian: StoredRows<T>,
     pub(crate) aref: Vec<T>,
     pub(crate) r: Vec<T>,
@@ -105,6 +108,7 @@ impl<T: Real> Problem<T> {
             mass_factor: TreeFactor::zeros(&tree),
             noslip_factor: TreeFactor::default(),
             qacc_smooth: vec![T::ZERO; tree.nv()],
+            rest: Vec::new(),
             tree,
             jacobian: StoredRows::default(),
             aref: Vec::new(),
@@ -271,6 +275,7 @@ impl<T: Real> Problem<T> {
             && same(&self.jacobian.values, &other.jacobian.values)
             && same(&self.mass.values, &other.mass.values)
             && same(&self.qacc_smooth, &other.qacc_smooth)
+            && same(&self.rest, &other.rest)
             && same(&self.aref, &other.aref)
             && same(&self.r, &other.r)
             && same(&self.d, &other.d)
@@ -299,11 +304,13 @@ impl<T: Real> Problem<T> {
         }
         self.mass.values.clear();
         self.qacc_smooth.clear();
+        self.rest.clear();
         for run in runs(dofs) {
             let rows = from.row_start(run.start)..from.row_start(run.end);
             for (to, from) in [
                 (&mut self.mass.values, &whole.mass.values[rows]),
-                (&mut self.qacc_smooth, &whole.qacc_smooth[run]),
+                (&mut self.qacc_smooth, &whole.qacc_smooth[run.clone()]),
+                (&mut self.rest, whole.rest.get(run).unwrap_or_default()),
             ] {
                 to.extend(from.iter().map(|&x| transfer.convert(x)));
             }

@@ -33,6 +33,7 @@ use crate::contact::Contact;
 use crate::context::StepContext;
 use crate::dynamics::discrete::{append_couplings, couple_smooth, spin_freely, subtract_couplings};
 use crate::model::{EqualityTarget, Params};
+use crate::options::ContactModel;
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::state::State;
@@ -65,6 +66,11 @@ pub fn constraint_stage<T: Real>(context: StepContext<T>, state: &State<T>, ws: 
     }
     if in_metric {
         append_couplings(model, &settings.solver, ws);
+    }
+    ws.problem.rest.clear();
+    if settings.contact_model == ContactModel::Coulomb {
+        let rest = state.qvel.iter().map(|&v| -v / params.timestep);
+        ws.problem.rest.extend(rest);
     }
     ws.clock.lap(Stage::Assembly as usize);
     let warmstart = Some(&state.qacc_warmstart[..]);

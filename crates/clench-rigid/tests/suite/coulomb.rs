@@ -5,6 +5,7 @@ use clench_math::{Quat, Vec3};
 use clench_rigid::Sim;
 use clench_rigid::builder::{GeomSpec, ModelBuilder};
 use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
+use clench_solver::ConstraintSolver;
 
 /// Builds a floor tilted by `angle` about y, with a body on it at the height `height`.
 fn on_floor(angle: f64, friction: f64, height: f64, shape: GeomSpec) -> ModelBuilder {
@@ -142,6 +143,47 @@ fn a_small_limit_of_line_searches_does_not_leave_other_normal_forces() {
         sim.step().expect("finite");
         let residual = sim.stats().normal_residual;
         assert!(residual < 1e-6, "{residual} N");
+    }
+}
+
+/// Returns the most that the energy of a settling tower of boxes exceeds its least value so far, and its kinetic energy
+/// at the end.
+fn settle(options: RigidOptions) -> [f64; 2] {
+    let mut b = world();
+    b.bodies[0].geoms.push(plane());
+    for level in 0..10 {
+        let height = 0.03 + 0.0601 * f64::from(level);
+        let at = [0.003 * f64::from(level % 3), 0.0, height];
+        let shape = vec![cuboid([0.05, 0.05, 0.03])];
+        add(&mut b, 0, &format!("box{level}"), at, free(), shape);
+    }
+    let law = options.contact_model(ContactModel::Coulomb);
+    let mut sim: Sim = Sim::with_options(model(&b), law).expect("valid");
+    sim.set_timestep(0.005).expect("positive");
+    let (mut least, mut rise): (f64, f64) = (f64::INFINITY, 0.0);
+    for _ in 0..500 {
+        sim.step().expect("finite");
+        let energy = sim.energy().expect("finite");
+        let energy = energy.kinetic + energy.potential;
+        least = least.min(energy);
+        rise = rise.max(energy - least);
+    }
+    [rise, sim.energy().expect("finite").kinetic]
+}
+
+#[test]
+fn a_tower_stands_though_its_solves_end_early() {
+    for impratio in [1.0, 100.0] {
+        let options = RigidOptions::new().impratio(impratio);
+        // The boxes settle and rebound.
+        let [expected, _] = settle(options);
+        for iterations in [4, 10] {
+            let short = options.constraint_solver(ConstraintSolver::Cg);
+            let [rise, kinetic] = settle(short.iterations(iterations));
+            let what = format!("impratio {impratio}, {iterations} iterations");
+            assert!(rise < 1.5 * expected, "{what}: {rise} J, not {expected} J");
+            assert!(kinetic < 1e-5, "{what}: {kinetic} J");
+        }
     }
 }
 

@@ -87,6 +87,37 @@ fn conjugate_gradients_obey_it_to_the_working_precision() {
     assert!(done >= 60, "{done} of {count}");
 }
 
+#[test]
+fn what_a_short_solve_leaves_does_no_work() {
+    let mut rng = Rng(11);
+    let mut short = 0;
+    for mut problem in problems(60, 1e3) {
+        problem.rest = (0..problem.nv()).map(|_| rng.range(-1e3, 1e3)).collect();
+        let options = SolverOptions::new()
+            .constraint_solver(ConstraintSolver::Cg)
+            .islands(Switch::Off)
+            .iterations(3);
+        let mut solver = Solver::new(problem.tree());
+        let stats = solver.solve(&problem, &options.resolve::<f64>(), None);
+        let stats = stats.expect("well-formed").lane(0);
+        if stats.status.name() != "iteration_limit" {
+            continue;
+        }
+        short += 1;
+        let less =
+            |x: &[f64], y: &[f64]| -> Vec<f64> { x.iter().zip(y).map(|(x, y)| x - y).collect() };
+        let displacement = less(solver.qacc(), &problem.qacc_smooth);
+        let mut inertial = vec![0.0; problem.nv()];
+        (problem.mass).mul(problem.tree(), &displacement, &mut inertial);
+        let gradient = less(&inertial, solver.qfrc_constraint());
+        let velocity = less(solver.qacc(), &problem.rest);
+        let work: f64 = gradient.iter().zip(&velocity).map(|(g, w)| g * w).sum();
+        let size = norm(&gradient) * norm(&velocity);
+        assert!(work.abs() < 1e-6 * size, "{work:e} of {size:e}");
+    }
+    assert!(short > 30, "{short} solves reach the limit");
+}
+
 /// Returns the problem of a contact with a plane, of two dofs, along it and away from it: with the lower triangle of
 /// the mass matrix, the unconstrained acceleration, D, the coefficient of friction, and aref along the plane.
 fn on_plane(
