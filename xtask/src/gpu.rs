@@ -13,23 +13,27 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// The compute tests, of `clench-gpu` and of the program, and the rendering tests.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "videos"];
-/// Two groups of tests of `device` that compile their own kernels, or those for any model in double precision, and run
-/// them a few times. The others share the kernels for any model in single precision, and run them for longer than
-/// Mesa's software device takes to optimize them. It compiles on one core per program, so two programs run in parallel.
+/// Two groups of tests of `device` that run their kernels a few times: mostly those for any model in double precision,
+/// and those specialized for a model in single precision. The others share the kernels for any model in single
+/// precision, and run them for longer than Mesa's software device takes to optimize them. It compiles on one core per
+/// program, so two programs run in parallel.
 const BRIEF: [&[&str]; 2] = [
-    &["batch::", "outputs::", "double::", "random::"],
     &[
         "autoreset::",
         "discrete::",
-        "sizes::",
+        "double::",
+        "random::",
         "sleep_combined::",
         "sleeping::",
+        "stiction::",
+    ],
+    &[
+        "batch::",
         "slots::",
-        "stages::applied_forces",
         "stages::coulombs_law",
         "stages::kernels_of_a_models_own",
-        "stiction::",
         "touch::",
+        "outputs::those_of_bodies_in_contact_by_discrete",
     ],
 ];
 /// The number of random models that are written for the tests.

@@ -6,7 +6,7 @@ use crate::clock::Clock;
 use crate::device::{Device, DeviceInfo};
 use crate::error::GpuError;
 use crate::fields::Fields;
-use crate::kernel_options::KernelOptions;
+use crate::kernel_options::{KernelOptions, contacts_at_start};
 use crate::pipelines::{Arrays, Pipeline, Pipelines};
 use crate::plan::Plan;
 use crate::precision::GpuReal;
@@ -27,7 +27,8 @@ const STEPS_AT_A_TIME: usize = 16;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GpuOptions {
     /// Options that override those of the model. `max_contacts` is the size of the contact pool of an environment; by
-    /// default, the maximum that its pairs can have, limited to 48 to 128 (fewer for more degrees of freedom).
+    /// default, the maximum that its pairs can have, limited to 48 to 128 (fewer for more degrees of freedom), or to
+    /// twice the contacts of the initial state or a keyframe if that is more.
     pub options: RigidOptions,
     /// A part of the name of the device to use; by default the first of [`devices`](crate::devices).
     pub device: Option<String>,
@@ -108,6 +109,7 @@ impl<S: GpuReal> GpuBatch<S> {
         let kernels = KernelOptions {
             general: options.general_kernels,
             slots: false,
+            contacts: contacts_at_start(&model, options.options)?,
         };
         let available = device.limits.max_compute_workgroup_storage_size as usize;
         let plan = Plan::<S>::new(&model, &settings, pairs, kernels, available);

@@ -357,6 +357,7 @@ mod tests {
     const SPECIALIZED: KernelOptions = KernelOptions {
         general: false,
         slots: true,
+        contacts: 0,
     };
 
     /// Returns the preface of a model without elements.
@@ -402,6 +403,7 @@ mod tests {
             let preface = empty_preface(KernelOptions {
                 general,
                 slots: !general,
+                contacts: 0,
             });
             for kernel in ALL {
                 check::<f32>(kernel, &preface);

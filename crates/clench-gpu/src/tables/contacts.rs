@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// limits the pool if the options leave it open and the pairs could fill a larger one. Excess contacts are a fault,
 /// never dropped silently.
 const POOL_NUMBERS: usize = 12_000;
-/// The limits of the pool.
+/// The limits of the pool, unless the contacts of the initial states fill half of it.
 const POOL: [usize; 2] = [48, 128];
 /// The pairs of a model per thread of the narrow phase; most pairs are far apart.
 const PAIRS_OF_A_THREAD: usize = 32;
@@ -188,7 +188,8 @@ impl Tables {
             MaxContacts::Limit(limit) => limit.min(max_points),
             MaxContacts::Auto => {
                 let pool = POOL_NUMBERS / (3 * widest * m.nv).max(1);
-                pool.clamp(POOL[0], POOL[1]).min(max_points)
+                let pool = pool.clamp(POOL[0], POOL[1]).max(2 * self.contacts_at_start);
+                pool.min(max_points)
             }
         };
         capacity.blocks += capacity.contacts;

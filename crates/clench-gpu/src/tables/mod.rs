@@ -67,6 +67,8 @@ pub(crate) struct Tables {
     pub layout: Layout,
     /// True if kernels serve any model: they read the layout for its features.
     pub general_kernels: bool,
+    /// The most contacts in an initial state or keyframe of the model.
+    contacts_at_start: usize,
 }
 
 /// The maximum sizes of the constraints of an environment.
@@ -125,6 +127,7 @@ impl Tables {
             constants: String::new(),
             layout: Layout::default(),
             general_kernels: kernels.general,
+            contacts_at_start: kernels.contacts,
         };
         tables.words("ZERO", [0]);
         tables.words("OWN_PARAMETERS", [0]);

@@ -1,7 +1,6 @@
 //! Automatic resets on a device, as on the processor: in calls of one step and of many, and in rollouts.
 
 use crate::common::{self, text};
-use clench_gpu::{GpuBatch, GpuOptions};
 use clench_rigid::batch::Controls;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -35,8 +34,7 @@ fn options() -> BatchOptions {
 
 /// Returns a batch on the device and one on the processor; `None` without a device.
 fn both(model: &Arc<Model>) -> Option<[Batch<f64>; 2]> {
-    common::own_batch::<f64>(model, 1)?;
-    let device = clench_gpu::batch(model.clone(), COUNT, options(), None).expect("a device");
+    let device = common::general_stepped(model, COUNT, options())?;
     let processor = Batch::with_options(model.clone(), COUNT, options()).expect("a good model");
     Some([device, processor])
 }
@@ -169,11 +167,8 @@ fn a_batch_of_the_device_alone_counts_resets() {
     let Some([_, mut processor]) = both(&model) else {
         return;
     };
-    let on_device = GpuOptions {
-        options: options().options,
-        ..GpuOptions::default()
-    };
-    let mut batch = GpuBatch::<f64>::new(model, COUNT, on_device).expect("a device");
+    let batch = common::try_general_batch::<f64>(&model, COUNT, options().options);
+    let mut batch = batch.expect("a good model").expect("a device");
     run_away(&mut processor);
     for (name, rows) in [
         ("qpos", &processor.state.qpos),

@@ -8,6 +8,7 @@ mod discrete;
 mod dm_control;
 mod double;
 mod gymnasium;
+mod histories;
 mod large;
 mod outputs;
 mod random;

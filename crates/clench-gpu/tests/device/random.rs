@@ -5,6 +5,7 @@ use crate::common::{self, Random, computed, difference, random_state, try_genera
 use clench_gpu::{GpuBatch, GpuError, GpuSolve};
 use clench_rigid::Sim;
 use clench_rigid::model::{Model, SensorKind};
+use clench_rigid::options::RigidOptions;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -95,7 +96,7 @@ fn random_models_agree() {
 
 /// Compares a forward pass in a few states.
 fn compare(model: &Arc<Model>, tally: &mut Tally) -> Result<(), String> {
-    let mut batch = match try_general_batch::<f64>(model, COUNT) {
+    let mut batch = match try_general_batch::<f64>(model, COUNT, RigidOptions::new()) {
         Ok(Some(batch)) => batch,
         Ok(None) => return Ok(()),
         Err(GpuError::Unsupported(_)) => {

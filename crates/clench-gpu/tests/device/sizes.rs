@@ -32,12 +32,11 @@ fn scene() -> String {
 #[test]
 fn geoms_have_the_sizes_of_their_environments() {
     let model = text(&scene());
-    if common::batch(&model, 1).is_none() {
-        return;
-    }
     let options = BatchOptions::default;
-    let mut device =
-        clench_gpu::batch::<f32>(model.clone(), COUNT, options(), None).expect("a device");
+    let Some(mut device) = common::general_stepped::<f32>(&model, COUNT, BatchOptions::default())
+    else {
+        return;
+    };
     let mut processor =
         Batch::<f32>::with_options(model.clone(), COUNT, options()).expect("a good model");
     let mut plain =

@@ -94,7 +94,7 @@ fn upload<S: GpuReal>(batch: &mut GpuBatch<S>, sims: &[Sim<S>]) {
 
 /// Asserts that every field of each environment is the processor's, except for the rounding of `tolerance`.
 fn forward_agrees<S: GpuReal>(model: &Arc<Model>, tolerance: f64) {
-    let Some(mut batch) = common::own_batch::<S>(model, COUNT) else {
+    let Some(mut batch) = common::batch_in::<S>(model, COUNT) else {
         return;
     };
     batch.enable_dynamic_constraints().expect("memory");
@@ -136,12 +136,11 @@ fn largest_gap<S: Scalar>(found: &[S], expected: &[S]) -> f64 {
 
 /// Returns a batch on the device and one on the processor in the same random states; `None` without a device.
 fn both<S: GpuReal>(model: &Arc<Model>, options: RigidOptions) -> Option<[Batch<S>; 2]> {
-    common::own_batch::<S>(model, 1)?;
     let options = BatchOptions {
         options,
         ..BatchOptions::default()
     };
-    let device = clench_gpu::batch(model.clone(), COUNT, options, None).expect("a device");
+    let device = common::stepped(model, COUNT, options)?;
     let processor = Batch::with_options(model.clone(), COUNT, options).expect("a good model");
     let mut batches = [device, processor];
     let mut random = Random::new(3);
@@ -244,7 +243,7 @@ fn a_reset_frees_slots() {
 #[test]
 fn slots_are_reserved_on_request() {
     let model = text(&own("held"));
-    let Some(mut batch) = common::own_batch::<f32>(&model, 2) else {
+    let Some(mut batch) = common::batch(&model, 2) else {
         return;
     };
     let before = (batch.bytes_per_env(), batch.width("dynamic_kind"));
@@ -256,7 +255,7 @@ fn slots_are_reserved_on_request() {
     assert!(batch.bytes_per_env() > before.0);
     let mut many = (*model).clone();
     many.max_dynamic_constraints = 1 << 20;
-    let mut many = common::own_batch::<f32>(&Arc::new(many), 2).expect("a device");
+    let mut many = common::batch(&Arc::new(many), 2).expect("a device");
     let error = many.enable_dynamic_constraints().expect_err("too many");
     assert!(
         error.to_string().contains("max_dynamic_constraints"),

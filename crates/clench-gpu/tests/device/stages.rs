@@ -244,7 +244,7 @@ fn applied_forces_and_mocap_bodies_count() {
            </worldbody>
          </mujoco>",
     );
-    let Some(mut batch) = batch(&model, 1) else {
+    let Some(mut batch) = common::general_batch(&model, 1) else {
         return;
     };
     let mut cpu = Batch::<f32>::new(model, 1).expect("a good model");

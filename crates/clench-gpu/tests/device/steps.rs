@@ -1,9 +1,9 @@
 //! Steps: trajectories, and the independence of environments.
 
 use crate::common::{
-    self, assert_all_run, batch, convert, difference, own, some_states, text, upload,
+    self, assert_all_run, convert, difference, general_batch, own, some_states, text, upload,
 };
-use clench_gpu::{GpuBatch, GpuFault, GpuOptions};
+use clench_gpu::{GpuBatch, GpuFault};
 use clench_rigid::model::Model;
 use clench_rigid::options::{MaxContacts, RigidOptions};
 use clench_rigid::{Sim, State};
@@ -11,6 +11,12 @@ use std::sync::Arc;
 
 fn runner() -> Arc<Model> {
     text(&own("runner"))
+}
+
+/// Returns a batch with room for a number of contacts.
+fn limited_batch(model: &Arc<Model>, count: usize, contacts: usize) -> Option<GpuBatch> {
+    let options = RigidOptions::new().max_contacts(MaxContacts::Limit(contacts));
+    common::try_general_batch(model, count, options).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Asserts that after `steps` steps from 24 states the device has drifted as the processor's single precision has.
@@ -114,15 +120,10 @@ fn a_step_that_is_cut_short_is_a_fault_and_no_wrong_numbers() {
     let lying = (own("serpent").replace(" contype=\"0\" conaffinity=\"0\"", ""))
         .replace("pos=\"0 0 0.6\"", "pos=\"0 0 0.05\"");
     let model = text(&lying);
-    if batch(&model, 1).is_none() {
-        return;
-    }
-    let options = GpuOptions {
-        options: RigidOptions::new().max_contacts(MaxContacts::Limit(80)),
-        ..GpuOptions::default()
-    };
     let count = 24;
-    let mut batch = GpuBatch::<f32>::new(model.clone(), count, options).expect("a device");
+    let Some(mut batch) = limited_batch(&model, count, 80) else {
+        return;
+    };
     let states = some_states(&model, count);
     upload(&mut batch, &states);
     batch.step(1).expect("a device");
@@ -164,7 +165,8 @@ fn after(batch: &mut GpuBatch, states: &[State<f32>], steps: usize) -> Vec<u32> 
 fn results_depend_on_nothing_but_the_state() {
     let model = runner();
     let states = some_states(&model, 40);
-    let (Some(mut many), Some(mut few)) = (batch(&model, 40), batch(&model, 3)) else {
+    let (Some(mut many), Some(mut few)) = (general_batch(&model, 40), general_batch(&model, 3))
+    else {
         return;
     };
     let first = after(&mut many, &states, 20);
@@ -182,10 +184,10 @@ fn results_depend_on_nothing_but_the_state() {
 fn a_step_whose_kernels_are_timed_is_a_step() {
     let model = runner();
     let states = some_states(&model, 3);
-    let Some(mut timed) = batch(&model, 3) else {
+    let Some(mut timed) = general_batch(&model, 3) else {
         return;
     };
-    let mut plain = batch(&model, 3).expect("a device");
+    let mut plain = general_batch(&model, 3).expect("a device");
     after(&mut timed, &states, 2);
     after(&mut plain, &states, 3);
     let times = timed.time_stages().expect("a clock");
@@ -205,12 +207,12 @@ fn a_step_whose_kernels_are_timed_is_a_step() {
 fn batches_that_step_at_a_time_know_nothing_of_each_other() {
     let model = runner();
     let states = some_states(&model, 20);
-    let Some(mut alone) = batch(&model, 20) else {
+    let Some(mut alone) = general_batch(&model, 20) else {
         return;
     };
     let expected = after(&mut alone, &states, 4);
     let run = || {
-        let mut batch = batch(&model, 20).expect("a device");
+        let mut batch = general_batch(&model, 20).expect("a device");
         Vec::from_iter((0..2).map(|_| after(&mut batch, &states, 4)))
     };
     std::thread::scope(|scope| {
@@ -227,7 +229,7 @@ fn batches_that_step_at_a_time_know_nothing_of_each_other() {
 fn a_fault_does_not_spread() {
     let model = runner();
     let mut states = some_states(&model, 40);
-    let Some(mut batch) = batch(&model, 40) else {
+    let Some(mut batch) = general_batch(&model, 40) else {
         return;
     };
     let well = after(&mut batch, &states, 8);
@@ -258,15 +260,9 @@ fn a_fault_does_not_spread() {
 #[test]
 fn too_many_contacts_are_a_fault() {
     let model = runner();
-    if batch(&model, 1).is_none() {
+    let Some(mut batch) = limited_batch(&model, 2, 1) else {
         return;
-    }
-    let options = RigidOptions::new().max_contacts(MaxContacts::Limit(1));
-    let options = GpuOptions {
-        options,
-        ..GpuOptions::default()
     };
-    let mut batch = GpuBatch::<f32>::new(model.clone(), 2, options).expect("a device");
     let mut low = vec![0.0; model.nq];
     low[1] = -0.55;
     batch.write_env(1, "qpos", &low).expect("a good row");
@@ -275,12 +271,31 @@ fn too_many_contacts_are_a_fault() {
     assert_eq!(batch.statuses().expect("a device"), [None, Some(full)]);
 }
 
+/// So many dofs leave room for 48 contacts by themselves.
+#[test]
+fn the_pool_holds_twice_the_contacts_of_the_initial_state() {
+    let model = text(
+        "<mujoco><worldbody>
+           <geom type='plane' size='5 5 1'/>
+           <replicate count='52' offset='0.3 0 0'>
+             <body pos='0 0 0.099'><joint type='slide' axis='0 0 1'/><geom size='0.1'/></body>
+           </replicate>
+         </worldbody></mujoco>",
+    );
+    let Some(mut batch) = general_batch::<f32>(&model, 1) else {
+        return;
+    };
+    batch.step(1).expect("a device");
+    assert_all_run(&batch);
+    assert_eq!(batch.solves().expect("a device")[0].contacts, 52);
+}
+
 #[test]
 fn thousands_run_side_by_side() {
     let model = runner();
     let count = 4096;
     let states = some_states(&model, 64);
-    let Some(mut batch) = batch(&model, count) else {
+    let Some(mut batch) = general_batch(&model, count) else {
         return;
     };
     let all: Vec<_> = (0..count).map(|env| states[env % 64].clone()).collect();
@@ -298,7 +313,7 @@ fn thousands_run_side_by_side() {
 #[test]
 fn bad_input_is_reported_by_name_and_index() {
     let model = runner();
-    let Some(mut batch) = batch(&model, 2) else {
+    let Some(mut batch) = general_batch(&model, 2) else {
         return;
     };
     let error =

@@ -6,7 +6,7 @@ use clench_rigid::model::{Model, Sensor};
 use clench_rigid::{Batch, BatchOptions};
 use std::sync::Arc;
 
-const COUNT: usize = 40;
+const COUNT: usize = 16;
 
 /// Returns the difference of a sensor in each environment, relative to its largest number.
 fn differences<S: GpuReal>(sensor: &Sensor, [device, processor]: &[Batch<S>; 2]) -> Vec<f64> {
@@ -24,11 +24,10 @@ fn differences<S: GpuReal>(sensor: &Sensor, [device, processor]: &[Batch<S>; 2])
 /// `strays` states, and that each differs between states.
 fn agree<S: GpuReal>(file: &str, tolerance: f64, strays: usize) {
     let model: Arc<Model> = text(file);
-    if common::own_batch::<S>(&model, 1).is_none() {
-        return;
-    }
     let options = BatchOptions::default();
-    let device = clench_gpu::batch::<S>(model.clone(), COUNT, options, None).expect("a device");
+    let Some(device) = common::stepped::<S>(&model, COUNT, options) else {
+        return;
+    };
     let processor = Batch::with_options(model.clone(), COUNT, options).expect("a good model");
     let mut batches = [device, processor];
     let mut random = Random::new(3);

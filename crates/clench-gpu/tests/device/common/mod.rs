@@ -14,10 +14,11 @@ pub use drift::*;
 
 use clench_gpu::{GpuBatch, GpuError, GpuOptions, GpuReal};
 use clench_math::{Scalar, Vec3};
-use clench_rigid::State;
 use clench_rigid::batch::Precision;
 use clench_rigid::model::{JointKind, Model};
+use clench_rigid::options::RigidOptions;
 use clench_rigid::state::kind::{Kind, Reference, StickReference};
+use clench_rigid::{Batch, BatchOptions, State};
 use std::sync::Arc;
 
 /// Loads a model of this repository.
@@ -39,45 +40,85 @@ pub fn text(file: &str) -> Arc<Model> {
 
 /// Returns a batch with kernels specialized for its model, the default; `None` if there is no device.
 pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
-    own_batch(model, count)
-}
-
-/// Returns such a batch in a given precision.
-pub fn own_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
-    with_options(model, count, GpuOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+    batch_in(model, count)
 }
 
 /// Returns a batch with kernels for any model, which Mesa's slow software device compiles once for all tests. If the
 /// environment variable `CLENCH_GPU_KERNELS` is `own`, the kernels are specialized for the model.
 pub fn general_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
-    try_general_batch(model, count).unwrap_or_else(|e| panic!("{e}"))
+    try_general_batch(model, count, RigidOptions::new()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Returns such a batch, or an error if the device refuses the model.
+/// Returns such a batch with options, or an error if the device refuses the model.
 pub fn try_general_batch<S: GpuReal>(
     model: &Arc<Model>,
     count: usize,
+    options: RigidOptions,
 ) -> Result<Option<GpuBatch<S>>, GpuError> {
     let general_kernels = std::env::var_os("CLENCH_GPU_KERNELS").is_none_or(|wish| wish != "own");
     let options = GpuOptions {
+        options,
         general_kernels,
         ..GpuOptions::default()
     };
     with_options(model, count, options)
 }
 
-/// Returns a batch, or `None` to skip the test if there is no device of this precision or the environment variable
-/// `CLENCH_GPU` is `skip`. If it is `require`, a missing device is a failure.
+/// Returns a batch with kernels for any model in double precision, which many tests share, and with specialized ones in
+/// single precision.
+pub fn batch_in<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
+    match shares_kernels::<S>() {
+        true => general_batch(model, count),
+        false => {
+            with_options(model, count, GpuOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+        }
+    }
+}
+
+fn shares_kernels<S>() -> bool {
+    size_of::<S>() == size_of::<f64>()
+}
+
+/// Returns a batch of `clench-rigid` that a device steps, with the kernels of [`batch_in`].
+pub fn stepped<S: GpuReal>(
+    model: &Arc<Model>,
+    count: usize,
+    options: BatchOptions,
+) -> Option<Batch<S>> {
+    if shares_kernels::<S>() {
+        return general_stepped(model, count, options);
+    }
+    let create = || clench_gpu::batch(model.clone(), count, options, None);
+    unless_skipped(create).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Returns such a batch with kernels for any model.
+pub fn general_stepped<S: GpuReal>(
+    model: &Arc<Model>,
+    count: usize,
+    options: BatchOptions,
+) -> Option<Batch<S>> {
+    let backend = try_general_batch::<S>(model, count, options.options);
+    let backend = Box::new(backend.unwrap_or_else(|e| panic!("{e}"))?);
+    Some(Batch::with_backend(model.clone(), count, options, backend).expect("a good model"))
+}
+
 fn with_options<S: GpuReal>(
     model: &Arc<Model>,
     count: usize,
     options: GpuOptions,
 ) -> Result<Option<GpuBatch<S>>, GpuError> {
+    unless_skipped(|| GpuBatch::new(model.clone(), count, options))
+}
+
+/// Creates a batch, or returns `None` to skip the test if there is no device of this precision or the environment
+/// variable `CLENCH_GPU` is `skip`. If it is `require`, a missing device is a failure.
+fn unless_skipped<T>(create: impl FnOnce() -> Result<T, GpuError>) -> Result<Option<T>, GpuError> {
     let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
     if wish == "skip" {
         return Ok(None);
     }
-    match GpuBatch::new(model.clone(), count, options) {
+    match create() {
         Ok(batch) => Ok(Some(batch)),
         Err(error @ GpuError::NoDoublePrecision { .. }) => {
             eprintln!("skipped: {error}");
