@@ -41,6 +41,7 @@ use crate::workspace::Workspace;
 use anchor_frames::FrameConstraint;
 use assembly::Assembly;
 use clench_math::{Mask, Real, kernel};
+use clench_solver::ConstraintSolver;
 use coordinate::Coordinate;
 use exact::ExactDiagonal;
 use implicit::ImplicitRows;
@@ -68,7 +69,8 @@ pub fn constraint_stage<T: Real>(context: StepContext<T>, state: &State<T>, ws: 
         append_couplings(model, &settings.solver, ws);
     }
     ws.problem.rest.clear();
-    if settings.contact_model == ContactModel::Coulomb {
+    let is_cg = settings.solver.constraint_solver == ConstraintSolver::Cg;
+    if is_cg && settings.contact_model == ContactModel::Coulomb {
         let rest = state.qvel.iter().map(|&v| -v / params.timestep);
         ws.problem.rest.extend(rest);
     }
