@@ -61,7 +61,7 @@ def controlled(
         for step in range(steps):
             ctrl = policy(step)
             # Adds an axis of steps before that of actuators.
-            part = batch.rollout(None, None if ctrl is None else np.asarray(ctrl)[..., None, :], record, 1)
+            part = batch.rollout(None, None if ctrl is None else np.atleast_1d(ctrl)[..., None, :], record, 1)
             for name, array in part.items():
                 rows[name][:, step] = array[:, 0]
             if progress is not None:
