@@ -27,7 +27,7 @@ const REFUSED: &[&str] = &["lqr"];
 
 #[test]
 fn trajectories_of_dm_controls_suite_drift_as_on_the_processor() {
-    folders::drift_on_folder("CLENCH_DM_CONTROL", MODELS);
+    folders::drift_on_folder("CLENCH_DM_CONTROL", MODELS, 200);
 }
 
 #[test]

@@ -22,7 +22,7 @@ const ROBOTS: &[(&str, usize, f64)] = &[
 
 #[test]
 fn trajectories_of_gymnasiums_robots_drift_as_on_the_processor() {
-    folders::drift_on_folder("CLENCH_GYMNASIUM", ROBOTS);
+    folders::drift_on_folder("CLENCH_GYMNASIUM", ROBOTS, 100);
 }
 
 #[test]

@@ -26,47 +26,47 @@ fn drift_alike(model: &Arc<Model>, steps: usize) {
 
 #[test]
 fn a_runner_drifts_as_on_the_processor() {
-    drift_alike(&runner(), 200);
+    drift_alike(&runner(), 100);
 }
 
 #[test]
 fn so_does_one_by_runge_kutta() {
     let rk4 = own("runner").replace("<option ", "<option integrator=\"RK4\" ");
-    drift_alike(&text(&rk4), 200);
+    drift_alike(&text(&rk4), 100);
 }
 
 #[test]
 fn so_does_a_serpent_whose_path_is_long() {
-    drift_alike(&text(&own("serpent")), 100);
+    drift_alike(&text(&own("serpent")), 50);
 }
 
 #[test]
 fn so_do_a_medley_and_a_linkage_implicit_in_velocities() {
     for name in ["medley", "linkage"] {
         let implicit = own(name).replace("<option ", "<option integrator=\"implicitfast\" ");
-        drift_alike(&text(&implicit), 100);
+        drift_alike(&text(&implicit), 50);
     }
 }
 
 #[test]
 fn activations_are_integrated_by_either_integrator() {
     let linkage = own("linkage");
-    drift_alike(&text(&linkage), 200);
+    drift_alike(&text(&linkage), 100);
     let rk4 = linkage.replace("<option ", "<option integrator=\"RK4\" ");
-    drift_alike(&text(&rk4), 100);
+    drift_alike(&text(&rk4), 50);
 }
 
 #[test]
 fn so_do_bodies_on_surfaces_that_move_and_adhere() {
-    drift_alike(&text(&own("surfaces")), 100);
+    drift_alike(&text(&own("surfaces")), 50);
 }
 
 #[test]
 fn so_do_ellipsoids_in_a_medium() {
     let swimmers = own("swimmers");
-    drift_alike(&text(&swimmers), 100);
+    drift_alike(&text(&swimmers), 50);
     let implicit = swimmers.replace("<option ", "<option integrator=\"implicitfast\" ");
-    drift_alike(&text(&implicit), 100);
+    drift_alike(&text(&implicit), 50);
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn so_do_controllers_and_motors() {
     let controllers = own("controllers");
     for integrator in ["Euler", "implicitfast"] {
         let option = format!("<option integrator=\"{integrator}\" ");
-        drift_alike(&text(&controllers.replace("<option ", &option)), 100);
+        drift_alike(&text(&controllers.replace("<option ", &option)), 50);
     }
 }
 
@@ -84,7 +84,7 @@ fn so_do_controllers_and_motors() {
 fn so_do_controllers_and_motors_by_runge_kutta() {
     let rk4 = "<option integrator=\"RK4\" timestep=\"0.00002\"";
     let controllers = own("controllers").replace("<option timestep=\"0.002\"", rk4);
-    drift_alike(&text(&controllers), 100);
+    drift_alike(&text(&controllers), 50);
 }
 
 /// Within 100 steps springs yield, and delayed controls arrive.
@@ -93,7 +93,7 @@ fn so_do_springs_that_yield_and_late_controls_by_each_integrator() {
     let pliant = own("pliant");
     for integrator in ["Euler", "implicitfast", "RK4"] {
         let option = format!("<option integrator=\"{integrator}\" ");
-        drift_alike(&text(&pliant.replace("<option ", &option)), 100);
+        drift_alike(&text(&pliant.replace("<option ", &option)), 50);
     }
 }
 
@@ -109,7 +109,7 @@ fn so_do_chains_and_free_bodies_implicit_in_coriolis_forces() {
 fn so_do_orientation_servos() {
     for integrator in ["implicitfast", "RK4"] {
         let option = format!("<option integrator=\"{integrator}\" ");
-        drift_alike(&text(&own("servos").replace("<option ", &option)), 100);
+        drift_alike(&text(&own("servos").replace("<option ", &option)), 50);
     }
 }
 

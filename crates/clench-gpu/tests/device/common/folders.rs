@@ -46,15 +46,15 @@ pub fn public(folder: &Path, name: &str) -> Arc<Model> {
     Arc::new(clench_formats::load(path).expect("a public model loads"))
 }
 
-/// Asserts that the models in the folder named by an environment variable drift as on the processor, in 200 steps from
-/// 8 states each. Does nothing without the variable.
-pub fn drift_on_folder(variable: &str, models: &[(&str, usize, f64)]) {
+/// Asserts that the models in the folder named by an environment variable drift as on the processor, in `steps` steps
+/// from 8 states each. Does nothing without the variable.
+pub fn drift_on_folder(variable: &str, models: &[(&str, usize, f64)], steps: usize) {
     let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {
         eprintln!("skipped: {variable} names no folder");
         return;
     };
     hold_for_all(models, |&(name, ..)| {
-        drift_alike(&public(&folder, name), 8, 200)
+        drift_alike(&public(&folder, name), 8, steps)
     });
 }
 
