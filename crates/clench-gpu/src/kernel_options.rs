@@ -16,7 +16,8 @@ pub(crate) struct KernelOptions {
     pub contacts: usize,
 }
 
-/// Returns the most contacts in the initial state and the keyframes of a model. A state that cannot be simulated has none.
+/// Returns the most contacts in the initial state and the keyframes of a model. A state that cannot be simulated has
+/// none.
 ///
 /// # Errors
 /// Returns an error if an option is out of range.

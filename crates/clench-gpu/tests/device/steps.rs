@@ -271,7 +271,7 @@ fn too_many_contacts_are_a_fault() {
     assert_eq!(batch.statuses().expect("a device"), [None, Some(full)]);
 }
 
-/// So many dofs leave room for 48 contacts by themselves.
+/// The number of dofs alone would leave room for 48 contacts.
 #[test]
 fn the_pool_holds_twice_the_contacts_of_the_initial_state() {
     let model = text(
