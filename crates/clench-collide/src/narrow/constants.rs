@@ -16,4 +16,8 @@ pub const SHAPE_CONSTANTS: &[(&str, f64)] = &[
     ("CAP_TILT", shape::TILT),
     ("HULL_NOTICEABLE", shape::NOTICEABLE),
     ("HULL_LEVEL", shape::LEVEL),
+    ("HULL_ASIDE_X", shape::ASIDE[0]),
+    ("HULL_ASIDE_Y", shape::ASIDE[1]),
+    ("HULL_ASIDE_Z", shape::ASIDE[2]),
+    ("HULL_TIE", shape::TIE),
 ];

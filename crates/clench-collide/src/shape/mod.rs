@@ -24,7 +24,7 @@ pub use ellipsoid::Ellipsoid;
 pub(crate) use ellipsoid::EllipsoidCore;
 pub(crate) use feature::{EDGE_SINE, Feature, MAX_CORNERS, most_level};
 pub use mesh::Mesh;
-pub(crate) use mesh::{LEVEL, NOTICEABLE};
+pub(crate) use mesh::{ASIDE, LEVEL, NOTICEABLE, TIE};
 pub use plane::Plane;
 pub(crate) use solid::{Homogeneous, Solid};
 pub use sphere::Sphere;

@@ -73,10 +73,13 @@ fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, offset: u32) -> Fe
     return Feature(kept, normal, 0.0);
 }
 
-// Stores the most nearly level face or edge at the furthest vertex, if one is level enough.
+// Stores the most nearly level face or edge at the furthest vertex, if one is level enough. A slight tilt, beyond
+// rounding, decides between several vertices or faces.
 fn feature_of_hull(body: Body, d: vec3f, offset: u32) -> Feature {
-    let vertex = furthest_of_hull(body.hull, d);
-    let face = face_across(body.hull, vertex, d);
+    let aside = vec3f(HULL_ASIDE_X, HULL_ASIDE_Y, HULL_ASIDE_Z);
+    let tilted = d + aside * max(HULL_TIE, 16.0 * EPSILON);
+    let vertex = furthest_of_hull(body.hull, tilted);
+    let face = face_across(body.hull, vertex, tilted);
     if (face != NONE) {
         return face_of_hull(body, face, vertex, d, offset);
     }

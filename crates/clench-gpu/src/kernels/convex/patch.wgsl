@@ -26,16 +26,41 @@ fn is_facing(n: vec3f) -> bool {
     return length(touching_vertex.w - n * best.gap) <= smallest * PATCH_MISS;
 }
 
+// Weighs the vertices of a triangle so that their sum is the point of its plane nearest to the origin. The point may
+// lie beyond the triangle, which is half of the face that two edges span. Returns false for bodies other than
+// overlapping polyhedra, or if the point is too far away for that.
+fn weigh_face() -> bool {
+    if (simplex_count != 3u || best.gap >= 0.0 || on_terrain || is_curved(body_a) || is_curved(body_b)) {
+        return false;
+    }
+    let corner = simplex[0].w;
+    let first = simplex[1].w - corner;
+    let second = simplex[2].w - corner;
+    let normal = cross(first, second);
+    let inverse = 1.0 / max(dot(normal, normal), SMALLEST);
+    let share = vec2f(dot(cross(second, corner), normal), dot(cross(corner, first), normal)) * inverse;
+    let rest = 1.0 - share.x - share.y;
+    if (min(rest, min(share.x, share.y)) < -1.0) {
+        return false;
+    }
+    weights[0] = rest;
+    weights[1] = share.x;
+    weights[2] = share.y;
+    return true;
+}
+
 fn witness(view: mat3x3f, n: vec3f) -> vec4f {
     let vertex = touching_vertex;
     var on_a = vertex.a;
     var on_b = vertex.b;
     if (!is_facing(n)) {
-        let count = simplex_count;
-        simplex_count = 1u;
-        weights[0] = 1.0;
-        for (var k = 1u; k < count; k++) {
-            add_vertex(simplex[k]);
+        if (!weigh_face()) {
+            let count = simplex_count;
+            simplex_count = 1u;
+            weights[0] = 1.0;
+            for (var k = 1u; k < count; k++) {
+                add_vertex(simplex[k]);
+            }
         }
         on_a = vec3f();
         on_b = vec3f();
