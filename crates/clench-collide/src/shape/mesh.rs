@@ -12,10 +12,10 @@ use clench_math::{Double, Mask, Real, Scalar, Vec3};
 pub(crate) const NOTICEABLE: f64 = 1e-7;
 /// The tilt below which a face is level.
 pub(crate) const LEVEL: f64 = 2e-3;
-/// The direction along which the vertices of an edge or a face that lies against a plane are ordered. No edge of a
-/// usual mesh is perpendicular to it.
+/// The direction, in the frame of the mesh, that decides between equally deep vertices and equally level faces. No edge
+/// of a usual mesh is perpendicular to it.
 pub(crate) const ASIDE: [f64; 3] = [0.8314, 0.4823, 0.2757];
-/// The tilt towards [`ASIDE`] that decides between them, rad. It exceeds the rounding error of a normal.
+/// The tilt towards [`ASIDE`] by which it decides, rad. It exceeds the rounding error of a normal.
 pub(crate) const TIE: f64 = 1e-9;
 
 /// The convex hull of a mesh, the same in every environment.
