@@ -12,9 +12,10 @@ use clench_view::{Marks, RecordError, Scene, Viewed};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
-use std::{fs, io};
 
 /// The default limit of a recording, in bytes.
 const LIMIT: usize = 1_000_000_000;
@@ -65,13 +66,28 @@ impl Recording {
         Ok(contents)
     }
 
-    /// Returns the page that replays the recording.
-    fn html(&self, py: Python<'_>) -> PyResult<String> {
+    /// Writes the page that replays the recording.
+    ///
+    /// # Errors
+    /// Returns an error if nothing is recorded, there is no page, or the output, which `create` returns, fails.
+    fn write<W: Write + Send>(
+        &self,
+        py: Python<'_>,
+        create: impl FnOnce() -> PyResult<W>,
+    ) -> PyResult<io::Result<W>> {
         let guard = lock(&self.inner, "recording")?;
         let Some(contents) = &*guard else {
             return Err(PyValueError::new_err("nothing is recorded yet"));
         };
-        Ok(contents.recording.to_html(&page(py)?))
+        let (page, recording) = (page(py)?, &contents.recording);
+        let mut out = create()?;
+        Ok(py.detach(|| recording.write_html(&page, &mut out).map(|()| out)))
+    }
+
+    /// Returns the page that replays the recording.
+    fn html(&self, py: Python<'_>) -> PyResult<String> {
+        let html = self.write(py, || Ok(Vec::new()))??;
+        Ok(String::from_utf8(html)?)
     }
 }
 
@@ -133,9 +149,9 @@ impl Recording {
     /// ValueError
     ///     If there are no frames.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let html = self.html(py)?;
-        let written = py.detach(|| fs::write(&path, html));
-        written.map_err(|error| at(&path, &error))
+        let failed = |error: io::Error| at(&path, &error);
+        let create = || Ok(BufWriter::new(File::create(&path).map_err(failed)?));
+        self.write(py, create)?.map(drop).map_err(failed)
     }
 
     /// Reads a page that `save` or ``clench simulate --record`` wrote.

@@ -98,12 +98,13 @@ impl Page {
         &self.0
     }
 
-    /// Returns the page with embedded data, which it shows instead of connecting to a server.
-    pub(crate) fn with_data(&self, json: &str) -> String {
-        // In HTML, `</script` ends a script, and `<!--` followed by `<script` keeps the next `</script` from ending it.
-        // In JSON, only strings contain `<`, where `\u003c` is equivalent.
-        let data = json.replace('<', "\\u003c");
-        (self.0).replacen(BEFORE_DATA, &format!("{BEFORE_DATA}{data}"), 1)
+    /// Returns the parts before and after embedded data, which the page shows instead of connecting to a server.
+    pub(crate) fn around_data(&self) -> (&str, &str) {
+        let before = self
+            .0
+            .find(BEFORE_DATA)
+            .map_or(0, |at| at + BEFORE_DATA.len());
+        self.0.split_at(before)
     }
 
     /// Returns the data embedded in such a page.

@@ -7,6 +7,7 @@ use clench::SimError;
 use clench::formats::base64;
 use clench::rigid::{Precision, Sim};
 use serde_json::{Map, Value, json};
+use std::io::{self, Write};
 
 /// The frames of a simulation.
 pub struct Recording {
@@ -97,10 +98,22 @@ impl Recording {
         self.frames.iter().filter_map(|frame| time(frame)).collect()
     }
 
-    /// Returns an HTML document that replays the recording without a server.
-    pub fn to_html(&self, page: &Page) -> String {
-        let data = json!({"scene": self.scene, "frames": self.frames});
-        page.with_data(&data.to_string())
+    /// Writes an HTML document that replays the recording without a server. The frames are not copied.
+    ///
+    /// # Errors
+    /// Returns an error if the output cannot be written.
+    pub fn write_html(&self, page: &Page, out: &mut impl Write) -> io::Result<()> {
+        let (before, after) = page.around_data();
+        // In HTML, `</script` ends a script, and `<!--` followed by `<script` keeps the next `</script` from ending it.
+        // In JSON, only strings contain `<`, where `\u003c` is equivalent. Base 64 does not contain it.
+        let scene = self.scene.to_string().replace('<', "\\u003c");
+        write!(out, "{before}{{\"scene\":{scene},\"frames\":[")?;
+        for (k, frame) in self.frames.iter().enumerate() {
+            let comma = if k == 0 { "" } else { "," };
+            write!(out, "{comma}\"{frame}\"")?;
+        }
+        write!(out, "]}}{after}")?;
+        out.flush()
     }
 
     /// Reads the recording of such a document, of at most `limit` bytes.

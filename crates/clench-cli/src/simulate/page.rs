@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use clench::rigid::Precision;
 use clench::{Model, Sim};
 use clench_view::{Marks, Page, RecordError, Recording, Scene};
-use std::io::Write;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// The file name extension of such a record.
@@ -114,9 +114,9 @@ impl PageRecorder {
     }
 
     fn write(self) -> Result<usize> {
-        let html = self.recording.to_html(&self.page);
         let write = || {
-            self.file.file()?.write_all(html.as_bytes())?;
+            let mut out = BufWriter::new(self.file.file()?);
+            self.recording.write_html(&self.page, &mut out)?;
             self.file.finish()
         };
         write().with_context(|| context(&self.path))?;

@@ -22,7 +22,10 @@ fn no_name_ends_the_data_or_hides_its_end() {
     let mut recording = Recording::new(Scene::new(&model), 1_000_000);
     let added = recording.append(&mut sim, &mut Marks::default());
     added.expect("the frame is below the limit");
-    let html = recording.to_html(&page());
+    let mut html = Vec::new();
+    let written = recording.write_html(&page(), &mut html);
+    written.expect("memory can be written");
+    let html = String::from_utf8(html).expect("the page is text");
     let (_, data) = html.split_once(MARKERS[0]).expect("the page has data");
     assert_eq!(data.find('<'), data.find(MARKERS[1]));
     let read = Recording::from_html(&html, 1_000_000).expect("the page is complete");
