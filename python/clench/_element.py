@@ -306,7 +306,8 @@ class SpecElement:
         Its elements become elements of this model, with names that begin with `prefix`: they are found, changed,
         renamed, removed and referred to like all others. They are read with the units, classes and inertia rules of
         their own model. Keyframes of this model retain the numbers of its joints, if it can be built; attached joints
-        before them get their initial positions.
+        before them get their initial positions. Actuators, sensors, tendons and constraints of this model come before
+        those of attached models, which have the order of the body tree; in MuJoCo, the order is that of the calls.
 
         >>> hand = clench.ModelSpec("hand")
         >>> _ = hand.world.add_body(name="palm").add_geom(size=0.1)
