@@ -7,11 +7,9 @@ use anyhow::{Context, Result};
 use clap::Args;
 use std::io::{self, BufRead, BufWriter, Write};
 
-/// Each line of standard input is a state: an object with any of `qpos`, `qvel`, `act`, `ctrl`, `qfrc_applied`,
-/// `xfrc_applied` (force, torque per body), `mocap_pos`, `mocap_quat`, `eq_active`, `time`, `qacc_warmstart`; missing
-/// fields have the model's default. `contacts` (the fields of MuJoCo's mjContact) replaces collision detection. Each
-/// line of standard output is the result for that state.
+/// The arguments of `clench forward`.
 #[derive(Args)]
+#[command(after_help = DETAILS)]
 pub(crate) struct Arguments {
     /// Add the constraint Jacobian, one row per constraint row
     #[arg(long)]
@@ -27,6 +25,15 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelArguments,
 }
+
+/// The format of the lines, for the help.
+const DETAILS: &str = "\
+Each line of standard input is a state: a JSON object with any of time, qpos, qvel, act, ctrl, qfrc_applied,
+xfrc_applied (force, torque per body), mocap_pos, mocap_quat, eq_active, plastic, history, qacc_warmstart,
+tree_asleep, pose_asleep, stick_references, stick_friction. Missing fields have the model's default. `contacts`, a
+list of objects with the fields of MuJoCo's mjContact, replaces collision detection. Each line of standard output is
+the result for that state; its `next` can be a state again, with the inputs added. The first invalid line ends the
+program, with an error that names it and exit code 2.";
 
 /// Processes every line of standard input; stops at the first invalid one with an error that names the line.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {

@@ -5,14 +5,19 @@ use clap::Args;
 use clench::formats::supported;
 use std::io::{self, Write};
 
-/// Prints each element of MJCF with the attributes that are read, those that are accepted without effect on motion,
-/// those that are refused (`name=value`: unless they have that value, which has no effect), and the elements that it
-/// may contain.
+/// The arguments of `clench mjcf`.
 #[derive(Args)]
+#[command(after_help = DETAILS)]
 pub(crate) struct Arguments {
     /// Only this element; `parent/name` selects one of several with the same name
     element: Option<String>,
 }
+
+/// The notation of the output, for the help.
+const DETAILS: &str = "\
+Each element is printed with the attributes that are read, those that are ignored because they do not affect motion,
+those that are refused (`name=value`: refused unless they have this value, which has no effect), and the elements that
+it may contain.";
 
 /// Prints everything to standard output.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {

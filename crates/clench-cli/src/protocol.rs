@@ -4,6 +4,7 @@ use anyhow::Result;
 use clench::Sim;
 use clench::rigid::contact::Contact;
 use clench::rigid::readout::{self, ConstraintRow};
+use clench::rigid::state::kind::StickReference;
 use serde::Serialize;
 
 /// Runs `forward`, with the given contacts if there are any.
@@ -15,7 +16,7 @@ pub fn forward(sim: &mut Sim, given: Option<&[Contact<f64>]>) -> Result<()> {
     Ok(())
 }
 
-/// The state one step later.
+/// The state one step later: all that the motion depends on, except for the inputs.
 #[derive(Serialize)]
 pub struct NextState {
     time: f64,
@@ -23,8 +24,12 @@ pub struct NextState {
     qvel: Vec<f64>,
     act: Vec<f64>,
     plastic: Vec<f64>,
+    history: Vec<f64>,
+    qacc_warmstart: Vec<f64>,
     tree_asleep: Vec<i32>,
     pose_asleep: Vec<f64>,
+    stick_references: Vec<[f64; 9]>,
+    stick_friction: Vec<f64>,
 }
 
 impl NextState {
@@ -42,10 +47,21 @@ impl NextState {
             qvel: after.qvel,
             act: after.act,
             plastic: after.plastic,
+            history: after.history,
+            qacc_warmstart: after.qacc_warmstart,
             tree_asleep: after.tree_asleep.iter().map(|&tree| tree as i32).collect(),
             pose_asleep: after.pose_asleep,
+            stick_references: after.stick_references.iter().map(stick_numbers).collect(),
+            stick_friction: after.stick_friction,
         })
     }
+}
+
+/// Returns a stick reference as a state line has it: the geoms, each plus one, then position and orientation.
+fn stick_numbers(reference: &StickReference<f64>) -> [f64; 9] {
+    let [x, y, z] = reference.position.to_array();
+    let [w, i, j, k] = reference.rotation.to_array();
+    [reference.first, reference.second, x, y, z, w, i, j, k]
 }
 
 /// The result of one state.

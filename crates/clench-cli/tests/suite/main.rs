@@ -8,3 +8,4 @@ mod profile;
 mod program;
 mod quality;
 mod recordings;
+mod states;
