@@ -195,7 +195,11 @@ fields! {
     act_dot: m.na;
     actuator_length: m.nout();
     actuator_velocity: m.nout();
+    /// Controls after their delays, clamped to their ranges.
+    acting_ctrl: m.nu();
     actuator_force: m.nout();
+    /// Limited forces of the currents of motors, without cogging and friction.
+    current_force: m.nout();
     /// The total actuator force on each tendon with a force limit.
     ten_actuator_force: m.tendons.len();
     qfrc_actuator: m.nv;

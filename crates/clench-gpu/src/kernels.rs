@@ -101,7 +101,7 @@ kernels! {
     FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_acceleration", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "polynomial", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Computes the metric of the integrator `discrete`, and the acceleration of smooth forces in it.
-    METRIC = "metric", Team: "team", "tree", "substitution", "chains", "outputs", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+    METRIC = "metric", Team: "team", "tree", "substitution", "chains", "outputs", "muscle", "dc_motor", "activation", "setpoint", "circuit", "gain",
         "orientation", "actuator_derivatives", "length_slopes", "ellipsoid", "ellipsoid_rates", "fluid_derivatives", "spring", "polynomial", "tendon_forces", "outer",
         "along", "couplings", "backbone", "metric";
     /// Finds active constraints and their softness.
@@ -134,11 +134,11 @@ kernels! {
     /// Advances the state by semi-implicit Euler; also by `discrete`, whose acceleration is that of the step.
     EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "euler";
     /// Does the same, implicit in velocity derivatives.
-    IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+    IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "gain",
         "orientation", "actuator_derivatives", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "gyroscopic", "implicit_fast";
     /// Does the same with Coriolis forces.
-    IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+    IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "gain",
         "orientation", "actuator_derivatives", "check_results", "sleep/awake", "sleep/restore", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "initial_state", "autoreset", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "coriolis", "lu", "implicit";
     /// Does the same by Runge–Kutta, stage by stage.

@@ -1,6 +1,20 @@
 // Actuator forces and the resulting dof forces. CPU counterpart: `dynamics/actuation.rs`. Ranges that are not limited
 // contain all numbers.
 
+// Stores the controls of actuator `u` after their delay, clamped to their ranges.
+fn store_controls(u: u32) {
+    for (var c = words[ACTUATOR_CTRL + u]; c < words[ACTUATOR_CTRL + u + 1u]; c++) {
+        var ctrl = fetch_state(CTRL + c);
+        if (ANY_DELAY && words[ACTUATOR_HISTORY + u] != NONE) {
+            let delay = parameter(ACTUATOR_DELAY + u);
+            if (delay > 0.0) {
+                ctrl = read_history(words[ACTUATOR_HISTORY + u], fetch(OFFSET) - delay, c - words[ACTUATOR_CTRL + u]);
+            }
+        }
+        put(ACTING_CTRL + c, clamp(ctrl, parameter(CTRL_RANGE + 2u * c), parameter(CTRL_RANGE + 2u * c + 1u)));
+    }
+}
+
 // Computes an output's velocity; zero without actuation.
 fn actuator_velocity(o: u32) {
     var velocity: f32 = 0.0;
@@ -71,6 +85,9 @@ fn actuation() {
         for (var o = output_of(u); o < output_of(u + 1u); o++) {
             actuator_velocity(o);
         }
+        if (ACTUATION) {
+            store_controls(u);
+        }
         if (ACTUATION && is_orientation_servo(u)) {
             put3(ACTUATOR_FORCE + output_of(u), servo_torque(u));
         } else if (ACTUATION) {
@@ -96,7 +113,9 @@ fn actuation() {
     for (var u = member; u < NU; u += TEAM) {
         let output = output_of(u);
         if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR && words[ACTUATOR_OFF + u] == 0u) {
-            add(ACTUATOR_FORCE + output, mechanical_force(u, fetch(ACTUATOR_LENGTH + output)));
+            let force = fetch(ACTUATOR_FORCE + output);
+            put(CURRENT_FORCE + output, force);
+            put(ACTUATOR_FORCE + output, force + mechanical_force(u, fetch(ACTUATOR_LENGTH + output)));
         }
     }
     join();

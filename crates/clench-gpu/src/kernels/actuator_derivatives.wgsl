@@ -40,11 +40,9 @@ fn tendon_is_saturated(t: u32) -> bool {
 // Returns true if a limit of the actuator or its tendon is active. Cogging and friction of a motor are added after its
 // limit, which applies only to its current.
 fn is_at_limit(u: u32) -> bool {
-    var limited = fetch(ACTUATOR_FORCE + output_of(u));
-    if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR) {
-        limited = unlimited_force(u);
-    }
-    if (is_saturated(limited, FORCE_RANGE + 2u * u)) {
+    let is_motor = ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR;
+    let limited = select(ACTUATOR_FORCE, CURRENT_FORCE, is_motor) + output_of(u);
+    if (is_saturated(fetch(limited), FORCE_RANGE + 2u * u)) {
         return true;
     }
     let t = words[ACTUATOR_LIMITED_TENDON + u];

@@ -9,18 +9,6 @@ fn affine(offset: u32, length: f32, velocity: f32) -> f32 {
     return moved + parameter(offset + AFFINE_VELOCITY) * velocity;
 }
 
-// Returns control `c` of actuator `u` after its delay, clamped to its range.
-fn acting_control(u: u32, c: u32) -> f32 {
-    var ctrl = fetch_state(CTRL + c);
-    if (ANY_DELAY && words[ACTUATOR_HISTORY + u] != NONE) {
-        let delay = parameter(ACTUATOR_DELAY + u);
-        if (delay > 0.0) {
-            ctrl = read_history(words[ACTUATOR_HISTORY + u], fetch(OFFSET) - delay, c - words[ACTUATOR_CTRL + u]);
-        }
-    }
-    return clamp(ctrl, parameter(CTRL_RANGE + 2u * c), parameter(CTRL_RANGE + 2u * c + 1u));
-}
-
 // Returns activation `a` of actuator `u` as its gain uses it.
 fn acting(u: u32, a: u32, velocity: f32) -> f32 {
     let act = fetch_state(ACT + a);
@@ -57,7 +45,7 @@ fn actuator_input(u: u32, length: f32, velocity: f32) -> f32 {
     if (ANY_ACTIVATION && a != NONE) {
         input = acting(u, a, velocity);
     } else {
-        input = acting_control(u, words[ACTUATOR_CTRL + u]);
+        input = fetch(ACTING_CTRL + words[ACTUATOR_CTRL + u]);
     }
     return nearest_setpoint(u, input, length);
 }
@@ -81,7 +69,7 @@ fn unlimited_force(u: u32) -> f32 {
         motor_rates(u, setpoints, circuit, length, velocity);
     } else if (ANY_ACTIVATION && words[ACTUATOR_ACT + u] != NONE) {
         let a = words[ACTUATOR_ACT + u];
-        put(ACT_DOT + a, activation_rate(u, acting_control(u, words[ACTUATOR_CTRL + u]), fetch_state(ACT + a)));
+        put(ACT_DOT + a, activation_rate(u, fetch(ACTING_CTRL + words[ACTUATOR_CTRL + u]), fetch_state(ACT + a)));
     }
     if (words[ACTUATOR_OFF + u] == 1u) {
         return 0.0;

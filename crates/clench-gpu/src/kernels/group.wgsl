@@ -53,6 +53,19 @@ fn total(x: vec4f) -> vec4f {
     return ((parts[0] + parts[1]) + (parts[2] + parts[3])) + ((parts[4] + parts[5]) + (parts[6] + parts[7]));
 }
 
+// As `total`, of one number from each thread.
+fn total_of(x: f32) -> f32 {
+    scratch[lane].x = x;
+    workgroupBarrier();
+    if (lane < 8u) {
+        let one_half = (scratch[lane].x + scratch[lane + 8u].x) + (scratch[lane + 16u].x + scratch[lane + 24u].x);
+        let other_half = (scratch[lane + 32u].x + scratch[lane + 40u].x) + (scratch[lane + 48u].x + scratch[lane + 56u].x);
+        parts[lane].x = one_half + other_half;
+    }
+    workgroupBarrier();
+    return ((parts[0].x + parts[1].x) + (parts[2].x + parts[3].x)) + ((parts[4].x + parts[5].x) + (parts[6].x + parts[7].x));
+}
+
 // Returns the largest number of all 64 threads.
 fn greatest(x: f32) -> f32 {
     scratch[lane].x = x;

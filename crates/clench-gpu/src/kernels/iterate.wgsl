@@ -96,7 +96,7 @@ fn differentiate(nrow: u32) -> f32 {
     if (!SHARE_ALL) {
         storageBarrier();
     }
-    return sqrt(total(vec4f(square, 0.0, 0.0, 0.0)).x);
+    return sqrt(total_of(square));
 }
 
 // Returns the norm of the rounding errors of the gradient, in which opposing forces cancel.
@@ -109,7 +109,7 @@ fn rounding(nrow: u32) -> f32 {
         }
         square += size * size;
     }
-    return EPSILON * sqrt(total(vec4f(square, 0.0, 0.0, 0.0)).x);
+    return EPSILON * sqrt(total_of(square));
 }
 
 // Recomputes M (a − a_unc) and J a − aref, without accumulated rounding.

@@ -26,7 +26,7 @@ fn copy_mass() -> f32 {
         diagonal += fetch(QM + words[TREE_START + i + 1u] - 1u);
     }
     join();
-    return total(vec4f(diagonal, 0.0, 0.0, 0.0)).x;
+    return total_of(diagonal);
 }
 
 // Returns the number of ancestors of a dof: its position in the rows of its descendants.

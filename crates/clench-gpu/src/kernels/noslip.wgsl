@@ -249,7 +249,7 @@ fn noslip(nrow: u32, nblock: u32, scale: f32) {
         cost += prepare_block(b);
     }
     join();
-    var improvement = 0.5 * total(vec4f(cost, 0.0, 0.0, 0.0)).x;
+    var improvement = 0.5 * total_of(cost);
     for (var sweep = 0u; sweep < NOSLIP_ITERATIONS; sweep++) {
         for (var k = 0u; k < 2u * nblock; k++) {
             let b = k % nblock;

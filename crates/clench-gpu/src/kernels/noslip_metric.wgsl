@@ -28,5 +28,5 @@ fn any_friction(nblock: u32) -> bool {
             count += 1.0;
         }
     }
-    return agreed(select(0u, 1u, total(vec4f(count, 0.0, 0.0, 0.0)).x > 0.0)) == 1u;
+    return agreed(select(0u, 1u, total_of(count) > 0.0)) == 1u;
 }

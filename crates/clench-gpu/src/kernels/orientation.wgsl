@@ -10,9 +10,9 @@ fn quat_from_rotation_vector(v: vec3f) -> vec4f {
 // Returns the target orientation of servo `u`; stores the rates of its activations.
 fn servo_target(u: u32) -> vec4f {
     let c = words[ACTUATOR_CTRL + u];
-    let vector = vec3f(acting_control(u, c), acting_control(u, c + 1u), acting_control(u, c + 2u));
+    let vector = fetch3(ACTING_CTRL + c);
     if (words[CONTROL_INPUT + c] == INPUT_QUATERNION) {
-        return quat_normalize(vec4f(vector, acting_control(u, c + 3u)));
+        return quat_normalize(vec4f(vector, fetch(ACTING_CTRL + c + 3u)));
     }
     let last = words[ACTUATOR_ACT + u];
     if (!ANY_ACTIVATION || last == NONE) {

@@ -60,5 +60,5 @@ fn precondition() -> f32 {
     if (!NEWTON) {
         substitute_towards_leaves(PRECONDITIONED_AT);
     }
-    return 0.5 * total(vec4f(square, 0.0, 0.0, 0.0)).x;
+    return 0.5 * total_of(square);
 }

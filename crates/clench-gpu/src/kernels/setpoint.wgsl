@@ -13,7 +13,7 @@ fn setpoints_of(u: u32) -> Setpoints {
     var setpoints = Setpoints();
     let start = words[ACTUATOR_CTRL + u];
     for (var c = start; c < words[ACTUATOR_CTRL + u + 1u]; c++) {
-        var value = acting_control(u, c);
+        var value = fetch(ACTING_CTRL + c);
         if (c == start) {
             let a = state_of(u, STATE_SLEW);
             if (a != NONE) {
