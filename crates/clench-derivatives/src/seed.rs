@@ -4,8 +4,9 @@ use crate::direction::Direction;
 use crate::stage::Stage;
 use crate::tangent::{add, move_along};
 use clench_dynamics::State;
-use clench_dynamics::model::{Model, Params};
+use clench_dynamics::model::{Model, ParamField, Params};
 use clench_math::{Dual, Real};
+use std::iter;
 
 /// A part of a direction of a pass: the input changes along `direction` at the rate `rate`.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +63,7 @@ pub(crate) fn set<L: Real<Scalar = f64>, const K: usize>(
         let Direction::Parameter(field, _) = seeds[0].direction else {
             continue;
         };
+        let earlier = take_rates(model, field, params);
         let mut row = params.read_lane(field, 0);
         for seed in seeds {
             let Direction::Parameter(_, index) = seed.direction else {
@@ -78,6 +80,41 @@ pub(crate) fn set<L: Real<Scalar = f64>, const K: usize>(
         }
         params.write_lane(field, 0, &row);
         params.derive(model, field);
+        add_rates(earlier, params);
+    }
+}
+
+/// The numbers of some parameters.
+type Rows<T> = Vec<(ParamField, Vec<T>)>;
+
+/// Removes the derivatives of a parameter and of those that follow from it. Returns their numbers before.
+fn take_rates<L: Real<Scalar = f64>, const K: usize>(
+    model: &Model,
+    field: ParamField,
+    params: &mut Params<Dual<L, K>>,
+) -> Rows<Dual<L, K>> {
+    let fields = iter::once(field).chain(field.followers(model).iter().copied());
+    let rows = Vec::from_iter(fields.map(|field| (field, params.read_lane(field, 0))));
+    for (field, row) in &rows {
+        let values = Vec::from_iter(row.iter().map(|number| Real::new(number.value)));
+        params.write_lane(*field, 0, &values);
+    }
+    rows
+}
+
+/// Adds the derivatives of parameters to earlier ones, and restores the earlier values: anchors of equalities differ from
+/// their sites after `weld_here`.
+fn add_rates<L: Real<Scalar = f64>, const K: usize>(
+    earlier: Rows<Dual<L, K>>,
+    params: &mut Params<Dual<L, K>>,
+) {
+    for (field, mut row) in earlier {
+        for (number, added) in row.iter_mut().zip(params.read_lane(field, 0)) {
+            for (rate, added) in number.tangent.iter_mut().zip(added.tangent) {
+                *rate += added;
+            }
+        }
+        params.write_lane(field, 0, &row);
     }
 }
 
@@ -89,12 +126,7 @@ pub(crate) fn clear_params<L: Real<Scalar = f64>, const K: usize>(
 ) {
     for seeds in of_one_field(seeds) {
         if let Direction::Parameter(field, _) = seeds[0].direction {
-            let mut row = params.read_lane(field, 0);
-            for number in &mut row {
-                *number = Real::new(number.value);
-            }
-            params.write_lane(field, 0, &row);
-            params.derive(model, field);
+            take_rates(model, field, params);
         }
     }
 }

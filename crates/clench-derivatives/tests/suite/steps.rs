@@ -354,3 +354,52 @@ fn derivatives_depend_on_the_state_alone() {
         .expect("derivatives");
     assert_eq!(&first, again);
 }
+
+/// The derivatives by anchors, which follow from sites, do not depend on the other parameters of a request.
+#[test]
+fn anchors_that_follow_from_sites() {
+    let text = r#"<mujoco>
+      <worldbody>
+        <body pos="0 0 1"><freejoint/><geom size=".1 .05 .02" type="box"/><site name="s" pos=".05 0 .1"/></body>
+        <body pos=".3 0 1"><freejoint/><geom size=".1 .05 .02" type="box"/><site name="t" pos=".05 0 .1"/></body>
+      </worldbody>
+      <equality><weld site1="s" site2="t"/></equality>
+    </mujoco>"#;
+    let model = Arc::new(clench_formats::load_str(text).expect("a model"));
+    let mut sim = Sim::new(Arc::clone(&model)).expect("a simulation");
+    (0..5).for_each(|_| sim.step().expect("a step"));
+    // Now the anchors differ from the sites.
+    sim.weld_here(0).expect("an equality");
+    let mut linearizer = Linearizer::new(&model).expect("lanes of this processor");
+    let mut derivatives = |parameters: &[(ParamField, usize)]| {
+        let request = Request {
+            parameters: parameters.to_vec(),
+            ..Request::default()
+        };
+        let linear = linearizer.linearize(&sim, &request).expect("derivatives");
+        linear.e.clone()
+    };
+    let parameters = [
+        (ParamField::eq_anchor2, 0),
+        (ParamField::site_pos, 4),
+        (ParamField::eq_anchor1, 1),
+        (ParamField::site_quat, 2),
+        (ParamField::body_inertia, 5),
+        (ParamField::eq_quat1, 3),
+        (ParamField::site_pos, 1),
+        (ParamField::eq_anchor2, 1),
+    ];
+    let together = derivatives(&parameters);
+    for (column, &parameter) in parameters.iter().enumerate() {
+        let alone = derivatives(&[parameter]).values;
+        let rows = together.values.chunks_exact(parameters.len());
+        let found = Vec::from_iter(rows.map(|row| row[column]));
+        assert!(alone.iter().any(|x| x.abs() > 1e-3), "{parameter:?}");
+        for (x, y) in found.iter().zip(&alone) {
+            assert!(
+                (x - y).abs() < 1e-12 * (1.0 + y.abs()),
+                "{parameter:?}: {x}, {y}"
+            );
+        }
+    }
+}
