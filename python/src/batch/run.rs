@@ -91,8 +91,8 @@ impl Batch {
     /// keyframe : str or int, optional
     ///     A keyframe, by name or index; of several models, each environment has those of its own.
     /// env_model : array_like of int, optional
-    ///     Other models for the environments of the mask, an index of `models` for each of them. Their parameters
-    ///     become those of the models.
+    ///     Models for the environments of the mask, an index of `models` for each of them. Their parameters become
+    ///     those of the models, also where a model stays the same.
     ///
     /// Raises
     /// ------

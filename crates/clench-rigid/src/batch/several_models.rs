@@ -112,8 +112,8 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Gives environments other models, and resets them: `models[k]` to environment `envs[k]`. Parameters of their own
-    /// become those of the models.
+    /// Gives environments models, and resets them: `models[k]` to environment `envs[k]`. Parameters of their own become
+    /// those of the models, also where an environment had the model before.
     ///
     /// # Errors
     /// Returns an error if the lengths differ, or if there is no such environment or model. Nothing changes then.
@@ -123,17 +123,16 @@ impl<S: Precision> Batch<S> {
         self.check_envs(envs)?;
         self.check_state()?;
         for (&env, &model) in envs.iter().zip(models) {
-            let changes = self.models.of(env) != model;
-            if changes {
+            if self.models.of(env) != model {
                 self.models.set(env, model);
-                let (shared, rows) = (&self.models, &mut self.params);
-                for own in rows {
-                    let params = shared.params(&self.model, env);
-                    own.set(env, &params);
-                }
-                if let Some(recorded) = &mut self.recorded {
-                    recorded.invalidate(env);
-                }
+            }
+            let (shared, rows) = (&self.models, &mut self.params);
+            for own in rows {
+                let params = shared.params(&self.model, env);
+                own.set(env, &params);
+            }
+            if let Some(recorded) = &mut self.recorded {
+                recorded.invalidate(env);
             }
             self.reset(env)?;
         }

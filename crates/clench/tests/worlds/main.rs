@@ -168,10 +168,12 @@ fn parameters_of_an_environment_are_those_of_its_model_until_they_are_set() {
     batch.randomize("body_mass", &envs, &masses).expect("valid");
     batch.set_constants(&envs).expect("positive");
     compare(&mut batch, &mut alone, 150);
-    // A reset to another model drops the values.
-    batch.reset_to_models(&[0], &[3]).expect("exists");
-    let mass = batch.param("body_mass", 0).expect("a field");
-    assert_eq!(mass, models[3].params.body_mass);
+    // A reset to a model drops the values, whether it is another one or the same.
+    for (env, model) in [(0, 3), (1, of_env[1])] {
+        batch.reset_to_models(&[env], &[model]).expect("exists");
+        let mass = batch.param("body_mass", env).expect("a field");
+        assert_eq!(mass, models[model].params.body_mass);
+    }
 }
 
 #[test]
