@@ -38,6 +38,13 @@ impl<S: Precision> RowSim<S> {
         done
     }
 
+    /// Does the first half of a step, which changes the state if it resets it.
+    pub(crate) fn step1(&mut self) -> Result<(), SimError> {
+        let done = self.current()?.step1();
+        self.rows.write(0, &self.sim.state)?;
+        done
+    }
+
     /// Does the second half of a step.
     pub(crate) fn step2(&mut self) -> Result<(), SimError> {
         let done = self.current()?.step2();

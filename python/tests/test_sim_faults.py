@@ -62,3 +62,24 @@ def test_autoreset() -> None:
     fresh = clench.Sim(ball())
     fresh.step(3)
     assert same_state(sim.state, fresh.state)
+
+
+def test_with_autoreset_the_first_half_of_a_step_shows_the_initial_state() -> None:
+    sim = clench.Sim(ball(), clench.RigidOptions(autoreset=True))
+    start = sim.qpos.copy()
+    seen = []
+    sim.step(3)
+    sim.qpos[0] = np.nan
+    sim.step(1, lambda sim: seen.append(sim.qpos.copy()))
+    np.testing.assert_array_equal(seen, [start])
+    assert sim.resets == 1 and sim.time == sim.model.timestep
+
+
+def test_with_autoreset_a_forward_pass_resets_nothing() -> None:
+    sim = clench.Sim(ball(), clench.RigidOptions(autoreset=True))
+    sim.step(3)
+    sim.qfrc_applied[0] = 1e15
+    before = sim.state
+    with pytest.raises(clench.SimulationError, match="diverged"):
+        sim.forward()
+    assert same_state(sim.state, before) and sim.resets == 0

@@ -124,7 +124,8 @@ impl<T: Precision> Sim<T> {
         self.with_autoreset(Self::try_step)
     }
 
-    /// Runs a step or forward pass. After a fault with the option `autoreset`, it is repeated from the initial state.
+    /// Runs a step or the first half of one. After a fault with the option `autoreset`, it is repeated from the initial
+    /// state.
     fn with_autoreset(
         &mut self,
         pass: impl Fn(&mut Self) -> Result<(), SimError>,
@@ -163,15 +164,11 @@ impl<T: Precision> Sim<T> {
         result
     }
 
-    /// Computes all results of the state without changing it, except for a reset as in [`step`](Self::step).
+    /// Computes all results of the state without changing it.
     ///
     /// # Errors
-    /// See [`step`](Self::step).
+    /// See [`step`](Self::step); nothing is reset.
     pub fn forward(&mut self) -> Result<(), SimError> {
-        self.with_autoreset(Self::try_forward)
-    }
-
-    fn try_forward(&mut self) -> Result<(), SimError> {
         self.check_state()?;
         self.on_threads(|context, state, ws| (Step::compiled().forward)(context, state, ws));
         let result = self.check_result(self.state.time);
@@ -223,7 +220,7 @@ impl<T: Precision> Sim<T> {
             return Ok(());
         }
         if wanted == Computed::Everything {
-            return self.try_forward();
+            return self.forward();
         }
         self.check_state()?;
         self.halfway = false;
@@ -318,7 +315,7 @@ impl<T: Precision> Sim<T> {
     pub fn stats(&self) -> LaneStats {
         self.ws.solver.stats().lane(0)
     }
-    /// Returns the number of steps and forward passes repeated by the option `autoreset`.
+    /// Returns the number of steps repeated by the option `autoreset`.
     pub fn resets(&self) -> u64 {
         self.resets
     }

@@ -198,7 +198,7 @@ impl Sim {
     fn step1(&self, py: Python<'_>) -> PyResult<()> {
         let mut guard = lock(&self.inner, "simulation")?;
         let any = &mut *guard;
-        py.detach(|| each_sim!(any, own => own.current()?.step1()))
+        py.detach(|| each_sim!(any, own => own.step1()))
             .map_err(sim_error)
     }
 

@@ -167,7 +167,8 @@ where
         good.all()
     }
 
-    /// Records that an environment failed, or must be reset if `autoreset` is on and it was not just reset.
+    /// Records that an environment failed, or that its step must be repeated from the initial state: if `autoreset` is on
+    /// and it was not just reset.
     fn fail(
         &mut self,
         (env, fault): (usize, Fault),
@@ -181,7 +182,8 @@ where
             fault,
             Fault::ContactOverflow { .. } | Fault::OverBudget { .. }
         );
-        if job.settings.autoreset && start == Start::Rows && !out_of_capacity {
+        let may_restart = job.settings.autoreset && job.pass == Pass::Step;
+        if may_restart && start == Start::Rows && !out_of_capacity {
             self.restarts.push((env as u32, step));
         } else {
             self.totals.faults.push((env as u32, fault));

@@ -139,6 +139,29 @@ fn with_autoreset_a_failure_from_the_initial_state_is_a_fault() {
     assert_eq!(alone.step(), Err(SimError::Fault(fault)));
 }
 
+/// A forward pass is of the state that a user wrote, and retains it.
+#[test]
+fn with_autoreset_a_forward_pass_that_fails_resets_nothing() {
+    let options = RigidOptions::new().autoreset(true);
+    let model = model(&stiff(Integrator::Euler));
+    let wide = with(Instructions::widest(), 1, options);
+    let mut batch = Batch::<f64>::with_options(model, 3, wide).expect("valid");
+    batch.step_n(3).expect("valid");
+    batch.state.qpos.row_mut(1)[0] = 0.5;
+    batch.state.qfrc_applied.row_mut(1)[0] = 1e15;
+    let mut alone = batch.sim(1).expect("valid");
+    let before = alone.state.clone();
+    let summary = batch.forward().expect("valid");
+    assert_eq!((summary.failed, summary.resets), (1, 0));
+    assert_state(&batch, 1, &before, &|| "batch".into());
+    let error = alone.forward().expect_err("it diverges");
+    assert_eq!((&alone.state, alone.resets()), (&before, 0));
+    let EnvStatus::Failed(fault) = batch.status(1) else {
+        panic!("it runs");
+    };
+    assert_eq!(error, SimError::Fault(fault));
+}
+
 /// An input that is not finite, before the first half of a step or between the halves, resets as in a whole step.
 #[test]
 fn with_autoreset_halves_of_a_step_restart_as_a_whole_step() {
