@@ -27,12 +27,15 @@ impl History {
     }
 
     /// Initializes the times of a buffer that is sampled every `period` seconds and was last due at `phase`. Each
-    /// sample was taken at the first step at or after its due time.
+    /// sample was taken at the first step at or after its due time; a shorter period than a step counts as a step,
+    /// which takes one sample at most.
     pub fn begin_periodic<T: Real>(&self, step: f64, [period, phase]: [f64; 2], numbers: &mut [T]) {
         let n = self.samples;
         numbers[self.start] = T::new(phase);
+        let spacing = period.max(step);
+        let last = if phase > -period { phase } else { -spacing };
         for (k, time) in numbers[self.times()].iter_mut().enumerate() {
-            let due = phase - (n - 1 - k) as f64 * period;
+            let due = last - (n - 1 - k) as f64 * spacing;
             *time = T::new((due / step).ceil() * step);
         }
     }

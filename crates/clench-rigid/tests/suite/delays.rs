@@ -146,8 +146,8 @@ fn a_delayed_sensor_reports_an_earlier_measurement() {
     }
 }
 
-/// Returns the readings, minus 100, of a position that grows from 100 by 1 per step of 1 s, at this interval and delay.
-fn ticks(interval: [f64; 2], delay: f64, steps: usize) -> Vec<f64> {
+/// Builds a slider with steps of 1 s, whose position a sensor reports at this interval and with this delay.
+fn sampled(interval: [f64; 2], delay: f64) -> Arc<Model> {
     let mut builder = ModelBuilder::new("slider");
     builder.physics.gravity = [0.0; 3];
     builder.physics.timestep = 1.0;
@@ -165,7 +165,12 @@ fn ticks(interval: [f64; 2], delay: f64, steps: usize) -> Vec<f64> {
         delay,
     };
     builder.sensors.push(periodic);
-    let model = Arc::new(builder.build().expect("valid"));
+    Arc::new(builder.build().expect("valid"))
+}
+
+/// Returns the readings, minus 100, of a position that grows from 100 by 1 per step of 1 s, at this interval and delay.
+fn ticks(interval: [f64; 2], delay: f64, steps: usize) -> Vec<f64> {
+    let model = sampled(interval, delay);
     let told = |sim: &Sim| sim.workspace().sensors.data[0];
     let mut sim = Sim::new(model.clone()).expect("valid");
     sim.state.qpos[0] = 100.0;
@@ -198,6 +203,14 @@ fn a_period_that_is_no_multiple_of_the_step_alternates() {
     let seen = ticks([2.5, -1.5], 0.0, 10);
     assert_eq!(seen[..4], [-100.0, 1.0, 1.0, 1.0]);
     assert_eq!(seen[4..], [4.0, 4.0, 6.0, 6.0, 6.0, 9.0]);
+}
+
+#[test]
+fn a_period_shorter_than_a_step_gives_one_sample_a_step() {
+    let times = |interval| State::<f64>::new(&sampled(interval, 0.0)).history[1..4].to_vec();
+    assert_eq!(times([0.7, 0.0]), [-3.0, -2.0, -1.0]);
+    assert_eq!(times([0.7, -0.2]), [-2.0, -1.0, 0.0]);
+    assert_eq!(times([2.5, 0.0]), [-7.0, -5.0, -2.0]);
 }
 
 #[test]
