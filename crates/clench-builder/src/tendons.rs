@@ -114,10 +114,9 @@ fn check_order(spec: &TendonSpec, path: &[Wrap]) -> Result<(), BuildError> {
     if joints > 0 {
         return Err(spec.error("must consist of joints, or of sites and geoms, but not of both"));
     }
-    for branch in path
-        .split(|wrap| *wrap == Wrap::Pulley)
-        .skip_while(|b| b.is_empty())
-    {
+    // One pulley may begin the path.
+    let before = usize::from(path.first() == Some(&Wrap::Pulley));
+    for branch in path.split(|wrap| *wrap == Wrap::Pulley).skip(before) {
         let is_site = |wrap: &Wrap| matches!(wrap, Wrap::Site(_));
         match branch {
             [] => return Err(spec.error("has a pulley that starts no branch")),

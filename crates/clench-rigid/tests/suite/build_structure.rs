@@ -274,6 +274,8 @@ const CASES: &[Case] = &[
     (|b| string(b, vec![site("tip"), around("drum")]), "tendon \"t\"", "between two sites"),
     (|b| string(b, vec![site("tip"), around("drum"), around("drum"), site("base")]), "tendon \"t\"", "between two sites"),
     (|b| string(b, vec![site("tip"), site("base"), WrapSpec::Pulley(2.0)]), "tendon \"t\"", "starts no branch"),
+    (|b| string(b, vec![WrapSpec::Pulley(2.0)]), "tendon \"t\"", "starts no branch"),
+    (|b| string(b, vec![WrapSpec::Pulley(2.0), WrapSpec::Pulley(2.0), site("tip"), site("base")]), "tendon \"t\"", "starts no branch"),
     (|b| string(b, vec![site("tip"), WrapSpec::Pulley(2.0), site("tip"), site("base")]), "tendon \"t\"", "one element"),
     (|b| string(b, vec![site("tip"), site("base"), WrapSpec::Pulley(0.0), site("tip"), site("base")]), "tendon \"t\"", "divisor"),
     (|b| string(b, vec![site("tip"), WrapSpec::Joint { joint: "a joint".into(), coef: 1.0 }]), "tendon \"t\"", "not of both"),
