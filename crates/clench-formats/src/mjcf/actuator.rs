@@ -156,26 +156,29 @@ impl ActuatorDraft {
         Ok(())
     }
 
-    /// Resolves a conflict of `inheritrange` with the range that it sets: one written in the element overrides an
-    /// inherited one.
+    /// Resolves a conflict of a shortcut's `inheritrange` with the range that it sets: one written in the element
+    /// overrides an inherited one. A `general` keeps both, as in MuJoCo: its own range counts unless it is a servo.
     fn resolve_inheritrange(&mut self, element: &Element) -> Result<(), LoadError> {
-        if self.parameters.inheritrange == 0.0 {
+        if self.parameters.inheritrange == 0.0 || self.shortcut == Shortcut::General {
             return Ok(());
         }
         let integrates = self.parameters.dynamics == DynamicsKind::Integrator;
-        let name = if integrates { "actrange" } else { "ctrlrange" };
+        let (name, range) = match integrates {
+            true => ("actrange", &mut self.spec.actrange),
+            false => ("ctrlrange", &mut self.spec.ctrlrange),
+        };
         let of_position = self.shortcut == Shortcut::Pid && element.text("posrange").is_some();
         match (
             element.text(name).is_some() || of_position,
             element.text("inheritrange").is_some(),
         ) {
-            (true, true) if self.shortcut != Shortcut::General => {
+            (true, false) => self.parameters.inheritrange = 0.0,
+            (false, true) => *range = [0.0; 2],
+            // A class with `general` may give both.
+            (both, _) if both || *range != [0.0; 2] => {
                 return Err(element.error(format!("{name} and inheritrange cannot both be given")));
             }
-            (true, false) => self.parameters.inheritrange = 0.0,
-            (_, true) if integrates => self.spec.actrange = [0.0; 2],
-            (_, true) => self.spec.ctrlrange = [0.0; 2],
-            (false, false) => {}
+            _ => {}
         }
         Ok(())
     }

@@ -275,6 +275,37 @@ fn of_inheritrange_and_a_range_the_one_on_the_actuator_counts() {
     assert!(rejected("<position joint='j' ctrlrange='0 1' inheritrange='1'/>").contains("both"));
 }
 
+/// As in MuJoCo, which replaces the range of a `general` actuator when it compiles a servo, and keeps it otherwise.
+#[test]
+fn a_general_actuator_keeps_its_range_beside_inheritrange() {
+    let range_and_share = |defaults: &str, element: &str| {
+        let general = actuator(defaults, element);
+        (general.ctrlrange, general.actrange, general.inheritrange)
+    };
+    let (own, none) = ([-1.0, 1.0], [0.0; 2]);
+    let no_servo = "<general joint='j' inheritrange='0.5' ctrlrange='-1 1'/>";
+    assert_eq!(range_and_share("", no_servo), (own, none, 0.0));
+    let no_servo = "<general joint='j' inheritrange='0.5'/>";
+    let class = "<general ctrlrange='-1 1'/>";
+    assert_eq!(range_and_share(class, no_servo), (own, none, 0.0));
+    let integral = "<general joint='j' dyntype='integrator' inheritrange='0.5' actrange='-1 1'/>";
+    assert_eq!(range_and_share("", integral), (none, own, 0.0));
+    let servo =
+        "<general joint='j' gainprm='3' biastype='affine' biasprm='0 -3' ctrlrange='-1 1'/>";
+    let class = "<general inheritrange='0.5'/>";
+    assert_eq!(range_and_share(class, servo), (own, none, 0.5));
+    let class = "<general inheritrange='0.5' ctrlrange='-1 1'/>";
+    assert_eq!(
+        range_and_share(class, "<motor joint='j'/>"),
+        (own, none, 0.0)
+    );
+    let text = format!(
+        "<mujoco><default>{class}</default><actuator><position joint='j'/></actuator></mujoco>"
+    );
+    let error = read_str(&text).expect_err("a position servo of both");
+    assert!(error.message.contains("both"));
+}
+
 #[test]
 fn a_positive_velocity_bias_of_a_servo_is_a_damping_ratio() {
     let general = actuator(
