@@ -331,7 +331,7 @@ impl Sim {
         Ok(each_sim!(&*guard, own => own.sim.stats()).into())
     }
 
-    /// int : Number of steps and forward passes that restarted from the initial state, with the option `autoreset`.
+    /// int : Number of steps that restarted from the initial state, with the option `autoreset`.
     #[getter]
     fn resets(&self) -> PyResult<u64> {
         let guard = lock(&self.inner, "simulation")?;
