@@ -24,11 +24,10 @@ const SLOPE: &str = r#"<mujoco>
 </mujoco>"#;
 
 /// Takes steps in one simulation, and steps that each begin from the line of the last; asserts that both move alike.
-fn assert_continues(text: &str, options: &RigidOptions, ctrl: &[f64]) {
+fn assert_continues(text: &str, options: RigidOptions, ctrl: &[f64]) {
     let model = Arc::new(load_str(text).expect("the model is valid"));
-    let sim = || {
-        Sim::<f64>::with_options(Arc::clone(&model), options.clone()).expect("it can be simulated")
-    };
+    let sim =
+        || Sim::<f64>::with_options(Arc::clone(&model), options).expect("it can be simulated");
     let (mut direct, mut chained) = (sim(), sim());
     direct.state.ctrl.copy_from_slice(ctrl);
     let mut line = json!({});
@@ -52,12 +51,12 @@ fn assert_continues(text: &str, options: &RigidOptions, ctrl: &[f64]) {
 
 #[test]
 fn a_next_state_has_the_history_of_delays() {
-    assert_continues(DELAYED, &RigidOptions::default(), &[1.0]);
+    assert_continues(DELAYED, RigidOptions::default(), &[1.0]);
 }
 
 #[test]
 fn a_next_state_remembers_where_contacts_stuck() {
-    assert_continues(SLOPE, &RigidOptions::new().stiction(true), &[]);
+    assert_continues(SLOPE, RigidOptions::new().stiction(true), &[]);
 }
 
 #[test]
