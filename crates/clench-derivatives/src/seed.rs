@@ -102,8 +102,8 @@ fn take_rates<L: Real<Scalar = f64>, const K: usize>(
     rows
 }
 
-/// Adds the derivatives of parameters to earlier ones, and restores the earlier values: anchors of equalities differ from
-/// their sites after `weld_here`.
+/// Adds the derivatives of parameters to earlier ones, and restores the earlier values: anchors of equalities differ
+/// from their sites after `weld_here`.
 fn add_rates<L: Real<Scalar = f64>, const K: usize>(
     earlier: Rows<Dual<L, K>>,
     params: &mut Params<Dual<L, K>>,

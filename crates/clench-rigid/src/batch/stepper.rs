@@ -167,8 +167,8 @@ where
         good.all()
     }
 
-    /// Records that an environment failed, or that its step must be repeated from the initial state: if `autoreset` is on
-    /// and it was not just reset.
+    /// Records that an environment failed, or that its step must be repeated from the initial state: if `autoreset` is
+    /// on and it was not just reset.
     fn fail(
         &mut self,
         (env, fault): (usize, Fault),
