@@ -367,6 +367,8 @@ fn anchors_that_follow_from_sites() {
     </mujoco>"#;
     let model = Arc::new(clench_formats::load_str(text).expect("a model"));
     let mut sim = Sim::new(Arc::clone(&model)).expect("a simulation");
+    // Inertias matter to a body that spins.
+    sim.state.qvel[3..6].copy_from_slice(&[1.0, 2.0, 3.0]);
     (0..5).for_each(|_| sim.step().expect("a step"));
     // Now the anchors differ from the sites.
     sim.weld_here(0).expect("an equality");
